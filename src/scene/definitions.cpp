@@ -23,6 +23,14 @@ std::vector<DefProblem> problems_of(const VideoDef& video) {
                          video.height_px, pixels, kMaxPicturePx)}};
 }
 
+std::vector<DefProblem> problems_of(const OverlayTextDef& text) {
+    if (!text.to_s || *text.to_s > text.from_s) return {};
+    return {
+        {"to",
+         {},
+         fmt::format("{} s is not after {} s, when it appears; give a later time", *text.to_s, text.from_s)}};
+}
+
 std::vector<DefProblem> problems_of(const GoldenDef& golden) {
     std::vector<DefProblem> problems;
     for (std::size_t i = 1; i < golden.at_s.size(); ++i) {

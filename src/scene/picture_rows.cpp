@@ -140,7 +140,7 @@ std::vector<Key> overlay_keys() {
         {"overlay", "legend", boolean, "", if_large(&OverlayDef::legend),
          "the scale of style.color_by, at the upper right"},
         {"overlay", "title", of(Kind::kText), "", field(&OverlayDef::title), "the title, at the upper left",
-         "shortened if it is too long"},
+         "in up to three lines; shortened if it is too long"},
         {"overlay", "energy", boolean, "", field(&OverlayDef::energy),
          "the error of the energy, next to the time", "left out if there is no room"},
         {"overlay", "method", boolean, "", field(&OverlayDef::method),
@@ -148,9 +148,24 @@ std::vector<Key> overlay_keys() {
         {"overlay", "plot", one_of({"none", "energy", "tip", "phase"}), "", field(&OverlayDef::plot),
          "a live plot next to the picture",
          "kinetic, potential and total energy; x and y of the first free end; its vx against x"},
+        {"overlay", "texts", of(Kind::kTables), "", none(),
+         "texts = [{ text = \"released\", at = [0.5, 0.1], from = 0.0, to = 1.5 }]",
+         "texts in the picture, for a time each"},
         {"overlay", "text_px", number({.low = 4.0, .high = 400.0}), "px",
          otherwise("shorter side / 40, at least readable", field(&OverlayDef::text_px)),
          "the size of the words at the edges"},
+    };
+}
+
+std::vector<Key> overlay_text_keys() {
+    const std::string_view section = "overlay.texts";
+    return {
+        {section, "text", of(Kind::kText), "", required(field(&OverlayTextDef::text)), "the text"},
+        {section, "at", pair("[x, y]", {.low = 0.0, .high = 1.0}), "", field(&OverlayTextDef::at),
+         "the place of its middle", "shares of the picture, from its upper left"},
+        {section, "from", number(kFrom0), "s", field(&OverlayTextDef::from_s), "when it appears"},
+        {section, "to", number(kFrom0), "s", otherwise("the end", field(&OverlayTextDef::to_s)),
+         "when it disappears"},
     };
 }
 
@@ -199,7 +214,7 @@ std::vector<Key> golden_keys() {
 std::vector<Key> picture_rows() {
     std::vector<Key> rows;
     for (const std::vector<Key>& part :
-         {video_keys(), style_keys(), overlay_keys(), camera_keys(), golden_keys()})
+         {video_keys(), style_keys(), overlay_keys(), overlay_text_keys(), camera_keys(), golden_keys()})
         rows.insert(rows.end(), part.begin(), part.end());
     return rows;
 }

@@ -96,6 +96,7 @@ struct DefProblem {
 };
 
 [[nodiscard]] std::vector<DefProblem> problems_of(const VideoDef& video);
+[[nodiscard]] std::vector<DefProblem> problems_of(const OverlayTextDef& text);
 /// Golden times that do not increase, and pictures that are too large.
 [[nodiscard]] std::vector<DefProblem> problems_of(const GoldenDef& golden);
 

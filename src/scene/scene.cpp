@@ -83,6 +83,8 @@ Scene parse_scene(std::string_view toml, const std::string& source_name,
     read_section(sections.video, scene.video);
     read_fields(sections.style, scene.style);
     read_fields(sections.overlay, scene.overlay);
+    for (const TableReader& text : sections.overlay.tables("texts"))
+        read_section(text, scene.overlay.texts.emplace_back());
     read_fields(sections.camera, scene.camera);
     if (document.contains("golden")) read_section(sections.golden, scene.golden.emplace());
     const SceneSize size = count_bodies(sections, solver, scene);

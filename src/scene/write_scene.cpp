@@ -171,11 +171,15 @@ std::vector<Table> solver_tables(const Scene& scene) {
 
 /// The tables of one definition each. A scene's name and its jobs change no byte of a video.
 std::vector<Table> plain_tables(const Scene& scene) {
-    return {table_of("world", "world", {part(scene.world)}),
-            table_of("video", "video", {part(scene.video)}, {"jobs"}),
-            table_of("style", "style", {part(scene.style)}),
-            table_of("overlay", "overlay", {part(scene.overlay)}),
-            table_of("camera", "camera", {part(scene.camera)})};
+    std::vector<Table> tables{table_of("world", "world", {part(scene.world)}),
+                              table_of("video", "video", {part(scene.video)}, {"jobs"}),
+                              table_of("style", "style", {part(scene.style)}),
+                              table_of("camera", "camera", {part(scene.camera)}),
+                              table_of("overlay", "overlay", {part(scene.overlay)})};
+    for (std::size_t i = 0; i < scene.overlay.texts.size(); ++i)
+        tables.push_back(
+            table_of("overlay.texts", fmt::format("overlay.texts[{}]", i), {part(scene.overlay.texts[i])}));
+    return tables;
 }
 
 std::vector<Table> body_tables(const Scene& scene) {
@@ -354,6 +358,8 @@ void check_definitions(const Scene& scene) {
             problems.add({}, dotted(section, one.key), one.problem);
     };
     check_all("video", scene.video);
+    for (std::size_t i = 0; i < scene.overlay.texts.size(); ++i)
+        check_all(fmt::format("overlay.texts[{}]", i), scene.overlay.texts[i]);
     if (scene.golden) {
         check(table_of("golden", "golden", {part(*scene.golden)}));
         check_all("golden", *scene.golden);

@@ -93,6 +93,14 @@ struct BodyStyleDef {
 /// horizontal position and velocity.
 enum class LivePlot { kNone, kEnergy, kTip, kPhase };
 
+/// A text in the picture.
+struct OverlayTextDef {
+    std::string text;            ///< as OverlayDef::title
+    Vec2 at{0.5, 0.5};           ///< its middle, as shares of the picture from its upper left; 0 .. 1
+    double from_s = 0.0;         ///< >= 0: from when on it shows
+    std::optional<double> to_s;  ///< and before when, later than from_s; default: to the end
+};
+
 /// Texts and plots at the edges of a picture.
 struct OverlayDef {
     /// The time; default: on an opaque ground, if the shorter side has at least 160 px.
@@ -103,6 +111,7 @@ struct OverlayDef {
     bool energy = false;            ///< the error of the energy (Figures::energy_error)
     bool method = false;            ///< the methods, and the bound of the displayed error
     LivePlot plot = LivePlot::kNone;
+    std::vector<OverlayTextDef> texts;  ///< not in a picture of several poses
     /// 4 .. 400: the size of the text at the edges; default: grows with the shorter side
     std::optional<double> text_px;
 };

@@ -20,7 +20,8 @@ constexpr double kBarWidth = 1.0 / 400.0;
 
 // Sizes as shares of the em.
 constexpr double kTitle = 1.4;
-constexpr double kTick = 0.4;  // at the ends of the scale bar
+constexpr double kTitleLine = 1.3;  // of the title's
+constexpr double kTick = 0.4;       // at the ends of the scale bar
 constexpr double kLegendHeight = 0.6;
 constexpr double kLegendTick = 0.2;
 constexpr int kGradientStepPx = 2;
@@ -85,6 +86,7 @@ Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int he
     scale_bar_ = def.scale_bar.value_or(by_default);
     legend_ = quantity_of(style.color_by) && def.legend.value_or(by_default);
     color_ = text_color(look);
+    title_lines_ = wrapped_title();
     while (decimals_ < kMaxDecimals && interval_s * power_of_10(decimals_) < 1.0) ++decimals_;
 }
 
@@ -98,8 +100,45 @@ int Overlay::title_px() const {
     return rounded(kTitle * em_px_);
 }
 
+int Overlay::title_line_px() const {
+    return rounded(kTitleLine * title_px());
+}
+
 int Overlay::title_baseline_px() const {
-    return edge_px_ + rounded(kAscent * title_px());
+    const auto more = static_cast<int>(title_lines_.size()) - 1;
+    return edge_px_ + rounded(kAscent * title_px()) + more * title_line_px();
+}
+
+std::vector<std::string> Overlay::wrapped_title() {
+    constexpr std::size_t kMaxLines = 3;
+    const int room_px = width_ - 2 * edge_px_ - (legend_ ? width_ / 2 : 0);
+    const auto fits = [&](const std::string& text, int size_px) {
+        return font_.width_px(text, size_px) <= room_px;
+    };
+    std::vector<std::string> lines{def_.title};
+    // A tiny frame is for the picture.
+    if (side_px_ < kMinSidePx || fits(def_.title, em_px_)) return lines;
+    while (lines.size() < kMaxLines && !fits(lines.back(), title_px())) {
+        const std::string rest = lines.back();
+        std::size_t end = std::string::npos;
+        for (std::size_t space = rest.find(' '); space != std::string::npos;
+             space = rest.find(' ', space + 1)) {
+            if (!fits(rest.substr(0, space), title_px())) break;
+            end = space;
+        }
+        if (end == std::string::npos) break;
+        lines.back() = rest.substr(0, end);
+        lines.push_back(rest.substr(end + 1));
+    }
+    return lines;
+}
+
+void Overlay::draw_text(const OverlayTextDef& text, DrawList& list) {
+    const int width_px = font_.width_px(text.text, em_px_);
+    const int most_px = std::max(edge_px_, width_ - edge_px_ - width_px);
+    const int x_px = std::clamp(rounded(text.at.x * width_ - 0.5 * width_px), edge_px_, most_px);
+    font_.write({x_px, rounded(text.at.y * height_ + 0.5 * kAscent * em_px_), em_px_, color_, text.text},
+                list);
 }
 
 int Overlay::method_baseline_px() const {
@@ -174,7 +213,16 @@ void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& li
             left_px = write_bottom(item.text(caption, interval_s_), left_px, right_px, list);
     }
     const int end_px = legend_ && scale_ ? draw_legend(list) : width_ - edge_px_;
-    write_top(def_.title, " ", end_px, title_baseline_px(), fitting_title_px(end_px), color_, list);
+    const int title_size_px = title_lines_.size() == 1 ? fitting_title_px(end_px) : title_px();
+    for (std::size_t i = 0; i < title_lines_.size(); ++i) {
+        const auto below = static_cast<int>(title_lines_.size() - 1 - i);
+        write_top(title_lines_[i], " ", end_px, title_baseline_px() - below * title_line_px(), title_size_px,
+                  color_, list);
+    }
+    for (const OverlayTextDef& text : def_.texts) {
+        const double time_s = caption.time_s.value_or(-1.0);
+        if (time_s >= text.from_s && time_s < text.to_s.value_or(HUGE_VAL)) draw_text(text, list);
+    }
     constexpr std::uint8_t kDim = 0xb0;
     if (def_.method)
         write_top(caption.method, ", ", end_px, method_baseline_px(), em_px_,

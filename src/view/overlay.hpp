@@ -57,8 +57,12 @@ class Overlay {
   private:
     [[nodiscard]] bool has_bottom() const;
     [[nodiscard]] int title_px() const;
-    /// The baselines from the upper edge.
+    /// The lines of a title that does not fit into one.
+    [[nodiscard]] std::vector<std::string> wrapped_title();
+    void draw_text(const OverlayTextDef& text, DrawList& list);
+    /// The baselines from the upper edge; of the title's last line.
     [[nodiscard]] int title_baseline_px() const;
+    [[nodiscard]] int title_line_px() const;
     [[nodiscard]] int method_baseline_px() const;
     /// Baseline of the legend's numbers.
     [[nodiscard]] int legend_baseline_px() const;
@@ -94,6 +98,7 @@ class Overlay {
     int side_px_;  ///< the shorter one of the frame
     int em_px_;
     int edge_px_;  ///< from the edges of the frame to the texts
+    std::vector<std::string> title_lines_;
     double interval_s_;
     int decimals_ = 2;
     Font font_;

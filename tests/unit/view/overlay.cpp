@@ -200,8 +200,8 @@ TEST(Legends, StayInTheirFrameAndKeepClearOfTheTitle) {
             EXPECT_EQ(ink, ink.intersected({0, 0, width, height})) << text.utf8;
         }
         if (list.texts.size() > 4) {
-            EXPECT_LT(font.ink(list.texts[4]).x1, legend.x0) << width;
-            EXPECT_TRUE(list.texts[4].utf8.ends_with("…"));
+            for (std::size_t i = 4; i < list.texts.size(); ++i)
+                EXPECT_LT(font.ink(list.texts[i]).x1, legend.x0) << width;
         }
         OverlayDef alone;
         alone.legend = true;
@@ -218,13 +218,13 @@ TEST(Overlays, ShortenATitleBetweenWordsAndAMethodBetweenItsParts) {
     def.time = def.scale_bar = false;
     const Caption caption{0.0, {}, "exact, relaxation, error below 0.0012 px"};
     int shortened = 0;
-    for (int width = 170; width < 700; width += 10) {
-        for (const std::string& text : words(drawn(def, caption, width, 200))) {
+    for (int width = 170; width < 700; width += 7) {
+        for (const std::string& text : words(drawn(def, caption, width, 150))) {
             if (!text.ends_with("…")) continue;
             ++shortened;
             const std::string kept = text.substr(0, text.size() - std::string("…").size());
             const bool is_title =
-                def.title.starts_with(kept + " ") || Font().width_px(text, em_of(170)) > width / 2;
+                def.title.starts_with(kept + " ") || Font().width_px(text, em_of(150)) > width / 2;
             EXPECT_TRUE(is_title || caption.method.starts_with(kept + ", ")) << text;
         }
     }
@@ -242,13 +242,44 @@ TEST(Titles, UseTheirRoomBeforeTheyAreCut) {
     EXPECT_LT(smaller.size_px, whole.size_px);
     EXPECT_GE(smaller.size_px, em_of(720));
     EXPECT_GT(Font().width_px(smaller.utf8, smaller.size_px + 1), 1100 - 2 * smaller.x_px);
-    const Text cut = title(600);
-    EXPECT_EQ(cut.size_px, em_of(600));
-    EXPECT_TRUE(cut.utf8.ends_with("…"));
+    const auto lines = words(drawn(def, {}, 600, 600));
+    EXPECT_EQ(lines, (Words{"A double pendulum of two ropes, released from 60",
+                            "degrees, at a quarter of its speed"}));
+    const auto cut = words(drawn(def, {}, 200, 200));
+    ASSERT_EQ(cut.size(), 3U);
+    EXPECT_TRUE(cut.back().ends_with("…"));
+    EXPECT_EQ(drawn(def, {}, 150, 150).texts.size(), 1U);  // tiny frames are for the picture
     def.title = "Seile: Donaudampfschifffahrtsgesellschaftskapitaensmuetzenhalterungsbefestigung";
-    const Text word = title(600);
+    const Text word = drawn(def, {}, 600, 720).texts.at(1);  // below "Seile:"
     EXPECT_TRUE(word.utf8.ends_with("…"));
     EXPECT_GT(Font().width_px(word.utf8, word.size_px), 450);
+}
+
+TEST(Titles, OfSeveralLinesMoveThePictureDown) {
+    OverlayDef def;
+    def.time = def.scale_bar = false;
+    def.title = "short";
+    const double one_px = Overlay(def, {}, 600, 600, kFrameS).insets().top_px;
+    def.title = "A double pendulum of two ropes, released from 60 degrees, at a quarter of its speed";
+    const Insets insets = Overlay(def, {}, 600, 600, kFrameS).insets();
+    EXPECT_GT(insets.top_px, one_px);
+    const DrawList list = drawn(def, {}, 600, 600);
+    ASSERT_EQ(list.texts.size(), 2U);
+    EXPECT_LT(Font().ink(list.texts[1]).y1, insets.top_px);
+}
+
+TEST(Overlays, ShowTextsForTheirTime) {
+    OverlayDef def;
+    def.time = def.scale_bar = false;
+    def.texts = {{"released", {0.5, 0.1}, 0.0, 1.5}, {"free", {1.0, 0.5}, 1.5, {}}};
+    EXPECT_EQ(words(drawn(def, {1.0, {}, {}}, 640, 360)), Words{"released"});
+    EXPECT_EQ(words(drawn(def, {1.5, {}, {}}, 640, 360)), Words{"free"});
+    EXPECT_TRUE(words(drawn(def, {}, 640, 360)).empty());  // a picture of several poses
+    const Text released = drawn(def, {1.0, {}, {}}, 640, 360).texts.at(0);
+    const PixelRect ink = Font().ink(released);
+    EXPECT_NEAR(0.5 * (ink.x0 + ink.x1), 320.0, 1.0);
+    EXPECT_NEAR(0.5 * (ink.y0 + ink.y1), 36.0, 1.0);
+    EXPECT_LT(Font().ink(drawn(def, {2.0, {}, {}}, 640, 360).texts.at(0)).x1, 640);
 }
 
 TEST(Legends, AreLeftOutIfThereIsNoRoomOrNoScale) {
