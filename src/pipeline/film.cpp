@@ -65,31 +65,11 @@ struct Film::Impl {
     /// Required while the motion is read.
     Use reading() const { return {*run, def.on_progress}; }
 
-    /// The times to record, including those within exposures if memory suffices.
+    /// The times to record.
     Timeline timeline() const {
-        const VideoDef& video = scene.video;
-        const std::int64_t last_frame = pipeline::last_frame_of(scene);
         std::vector<double> times_s = plot_data.times_s();
         times_s.insert(times_s.end(), def.stills_s.begin(), def.stills_s.end());
-        constexpr std::size_t kMaxNumbersPerParticle = 5;
-        const std::size_t state_bytes = kMaxNumbersPerParticle * sizeof(double) * system.particle_count();
-        const std::size_t most_states = def.motion_budget_bytes / 2 / state_bytes;
-        const auto subframes = static_cast<std::size_t>((last_frame + 1) * video.subframes);
-        const bool has_room = subframes <= most_states;
-        for (std::int64_t k = 0; video.shutter > 0.0 && has_room && k <= last_frame; ++k) {
-            const double time_s = video.scene_rate().time_s(k);
-            for (int i = 0; i < video.subframes; ++i)
-                times_s.push_back(subframe_s(time_s, video.shutter, scene.world.duration_s, i));
-        }
-        return {video.scene_rate(), last_frame, std::move(times_s), video.fps.interval_s()};
-    }
-
-    /// The time of sub-frame `i` of the exposure at `time_s`, clipped to the motion.
-    double subframe_s(double time_s, double shutter, double end_s, int i) const {
-        const double half_s = 0.5 * shutter * scene.video.scene_rate().interval_s();
-        const double from_s = std::max(0.0, time_s - half_s);
-        const double until_s = std::min(std::max(end_s, time_s), time_s + half_s);
-        return from_s + (i + 0.5) / scene.video.subframes * (until_s - from_s);
+        return pipeline::recorded_times(scene, system, std::move(times_s), def.motion_budget_bytes);
     }
 
     /// Shares the motion of another film.
@@ -127,8 +107,22 @@ struct Film::Impl {
                 [this](double time_s) -> const State& { return motion.at(time_s); },
                 [this](const State& state) { return motion.energy_of(state); });
         }
-        camera = fit_locked(drawing.renderer);
-        return *camera;
+        CameraDef fitted = fit_locked(drawing.renderer);
+        if (scene.camera.moves()) {
+            track = drawing.renderer.track(
+                scene.camera.follow ? last_s_locked() : 0.0,
+                [this](double time_s) -> const State& { return motion.at(time_s); }, fitted);
+        }
+        return camera.emplace(fitted);
+    }
+
+    CameraDef camera_at(double time_s) {
+        const CameraDef& still = find_camera();
+        return track ? track->at(still, time_s) : still;
+    }
+
+    view::Camera map_at(double time_s, const pipeline::SceneRenderer& renderer) {
+        return renderer.map_of(camera_at(time_s));
     }
 
     /// Fits a renderer to the motion.
@@ -179,7 +173,7 @@ struct Film::Impl {
 
     view::DrawList list_poses(std::span<const double> times_s) {
         pipeline::SceneRenderer& renderer = drawing.renderer;
-        const view::Camera map = renderer.map_of(find_camera());
+        const view::Camera map = map_at(times_s.back(), renderer);
         const view::SceneView& view = renderer.view();
         view::DrawList list;
         view.start(list);
@@ -220,14 +214,14 @@ struct Film::Impl {
         return caption;
     }
 
-    /// Requires a Use of the context's renderer. `camera_def`: as find_camera() returns it.
-    Damage draw(double time_s, double shutter, const CameraDef& camera_def, DrawContext& by) {
+    /// Requires a Use of the context's renderer.
+    Damage draw(double time_s, double shutter, DrawContext& by) {
         const pipeline::SharedMotion::Activity drawing_it(*run);
         time_s = checked_s(time_s);
         if (!(shutter >= 0.0 && shutter <= 1.0))
             throw Error(ExitCode::kUsage, fmt::format("a shutter of {} is not within 0 .. 1", shutter));
-        const view::Camera map = by.renderer.map_of(camera_def);
-        if (shutter > 0.0) return expose(time_s, shutter, map, by);
+        if (shutter > 0.0) return expose(time_s, shutter, by);
+        const view::Camera map = map_at(time_s, by.renderer);
         const State& state = read(time_s, by);
         return by.renderer.draw(state, map, caption_of(by, map), {by.trails.to(state), state.time_s});
     }
@@ -247,7 +241,8 @@ struct Film::Impl {
     }
 
     /// Reads the states in order of time, so that those that are not recorded take one simulation.
-    Damage expose(double time_s, double shutter, const view::Camera& map, DrawContext& by) {
+    Damage expose(double time_s, double shutter, DrawContext& by) {
+        const view::Camera map = map_at(time_s, by.renderer);
         const double end_s = last_s();
         by.renderer.begin_exposure();
         std::optional<view::Caption> caption;
@@ -256,10 +251,10 @@ struct Film::Impl {
             caption = caption_of(by, map);
         };
         for (int i = 0; i < scene.video.subframes; ++i) {
-            const double at_s = subframe_s(time_s, shutter, end_s, i);
+            const double at_s = pipeline::subframe_s(scene.video, time_s, shutter, end_s, i);
             if (!caption && at_s >= time_s) note();
             const State& state = read(at_s, by);
-            by.renderer.expose(state, map, {by.trails.to(state), time_s});
+            by.renderer.expose(state, map_at(at_s, by.renderer), {by.trails.to(state), time_s});
         }
         if (!caption) note();
         return by.renderer.develop(*caption, map);
@@ -267,8 +262,8 @@ struct Film::Impl {
 
     /// True if the frame at a time would be empty.
     bool is_empty(double time_s) {
-        const view::Camera map = drawing.renderer.map_of(find_camera());
         const auto shows_nothing_at = [&](double at_s) {
+            const view::Camera map = map_at(at_s, drawing.renderer);
             const State& state = read(at_s, drawing);
             return drawing.renderer.would_show_nothing(state, map, {drawing.trails.to(state), time_s});
         };
@@ -276,7 +271,8 @@ struct Film::Impl {
         if (video.shutter == 0.0) return shows_nothing_at(time_s);
         const double end_s = last_s();
         for (int i = 0; i < video.subframes; ++i)
-            if (!shows_nothing_at(subframe_s(time_s, video.shutter, end_s, i))) return false;
+            if (!shows_nothing_at(pipeline::subframe_s(scene.video, time_s, video.shutter, end_s, i)))
+                return false;
         return true;
     }
 
@@ -285,10 +281,11 @@ struct Film::Impl {
         const Use use = reading();
         const VideoDef& video = scene.video;
         const double last_frame_s = video.scene_rate().time_s(end - 1);
-        const double needed_s = video.shutter > 0.0
-                                    ? std::max(last_frame_s, subframe_s(last_frame_s, video.shutter,
-                                                                        last_s_locked(), video.subframes - 1))
-                                    : last_frame_s;
+        const double needed_s =
+            video.shutter > 0.0
+                ? std::max(last_frame_s, pipeline::subframe_s(scene.video, last_frame_s, video.shutter,
+                                                              last_s_locked(), video.subframes - 1))
+                : last_frame_s;
         const auto last = motion.timeline().find(needed_s);
         if (!last) return false;
         try {
@@ -309,8 +306,9 @@ struct Film::Impl {
     Plan& plan;
     std::optional<view::PlotData> plot;
     std::optional<CameraDef> camera;
-    State asked;      ///< returned last by at()
-    Figures figures;  ///< of that state
+    std::optional<view::CameraTrack> track;  ///< of a camera that moves
+    State asked;                             ///< returned last by at()
+    Figures figures;                         ///< of that state
 };
 
 Film::Film(const Scene& scene, FilmDef def) {
@@ -356,7 +354,8 @@ const Plan& Film::plan() const {
 
 std::optional<double> Film::error_bound_px() {
     if (!plan().error_bound_m) return std::nullopt;
-    return *plan().error_bound_m * impl_->drawing.renderer.map_of(impl_->find_camera()).pixels_per_metre();
+    const CameraDef& still = impl_->find_camera();
+    return *plan().error_bound_m * scene().video.height_px / view::least_height_m(still, *still.height_m);
 }
 
 const CameraDef& Film::camera() {
@@ -367,6 +366,10 @@ std::string Film::color_scale() {
     impl_->find_camera();
     const auto& scale = impl_->drawing.renderer.view().scale();
     return scale ? view::scale_text(*scale) : "";
+}
+
+CameraDef Film::camera_at(double time_s) {
+    return impl_->camera_at(time_s);
 }
 
 int Film::simulation_passes() const {
@@ -404,17 +407,17 @@ Image Film::frame(std::int64_t k) {
 
 Image Film::still(double time_s, double shutter) {
     const pipeline::SceneRenderer::Use use(impl_->drawing.renderer);
-    impl_->draw(time_s, shutter, impl_->find_camera(), impl_->drawing);
+    impl_->draw(time_s, shutter, impl_->drawing);
     return impl_->drawing.renderer.image();
 }
 
 std::vector<std::uint8_t> Film::mask(std::int64_t k) {
-    const view::Camera map = impl_->drawing.renderer.map_of(impl_->find_camera());
+    const view::Camera map = impl_->map_at(time_s(k), impl_->drawing.renderer);
     return impl_->drawing.renderer.mask(state(k), map);
 }
 
-std::vector<Vec2> Film::to_pixels(std::span<const Vec2> positions_m) {
-    const view::Camera map = impl_->drawing.renderer.map_of(impl_->find_camera());
+std::vector<Vec2> Film::to_pixels(std::span<const Vec2> positions_m, double time_s) {
+    const view::Camera map = impl_->map_at(time_s, impl_->drawing.renderer);
     std::vector<Vec2> pixels;
     for (const Vec2 position_m : positions_m) {
         const Vec2 relative_m = position_m - system().origin_m;
@@ -435,11 +438,7 @@ GlInfo Film::gl() {
 }
 
 FilmRenderer::FilmRenderer(Film& film, pipeline::OwnedCanvas* canvas)
-    : film_(&film),
-      lent_(canvas),
-      context_(film.impl_->make_context(canvas)),
-      use_(context_->renderer),
-      camera_(film.impl_->find_camera()) {}
+    : film_(&film), lent_(canvas), context_(film.impl_->make_context(canvas)), use_(context_->renderer) {}
 
 FilmRenderer::~FilmRenderer() {
     if (lent_ != nullptr) *lent_ = context_->renderer.take_canvas();
@@ -451,7 +450,7 @@ bool FilmRenderer::can_draw_in_any_order(Film& film, std::int64_t end) {
 
 Damage FilmRenderer::draw(double time_s) {
     Film::Impl& impl = *film_->impl_;
-    return impl.draw(time_s, impl.scene.video.shutter, camera_, *context_);
+    return impl.draw(time_s, impl.scene.video.shutter, *context_);
 }
 
 view::DrawList FilmRenderer::list_poses(Film& film, std::span<const double> times_s) {

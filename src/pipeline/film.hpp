@@ -76,12 +76,15 @@ class Film {
     [[nodiscard]] const Plan& plan() const;
     /// Bound on the displayed position error in pixels; std::nullopt if the plan has none.
     [[nodiscard]] std::optional<double> error_bound_px();
-    /// The camera with center and height filled in; a scene with this camera gives the same bytes. Simulates
-    /// the motion to its end unless the scene gives both and has no supports.
+    /// The camera with center and height filled in (for one that moves, those without its path); a scene with
+    /// this camera gives the same bytes. Simulates the motion to its end unless the scene gives both and has
+    /// no supports.
     [[nodiscard]] const CameraDef& camera();
     /// The scale of colours that show a quantity: "tension (N) 0 .. 20"; empty for others. Throws what
     /// camera() throws.
     [[nodiscard]] std::string color_scale();
+    /// The same with the center and the height at a time, of a camera that moves too.
+    [[nodiscard]] CameraDef camera_at(double time_s);
     /// Number of simulations of the motion so far.
     [[nodiscard]] int simulation_passes() const;
 
@@ -114,8 +117,8 @@ class Film {
     /// more than 255 bodies.
     [[nodiscard]] std::vector<std::uint8_t> mask(std::int64_t k);
     /// Positions in m in world coordinates as pixels, y down; the centre of the top left pixel is at (0.5,
-    /// 0.5). Throws what camera() throws.
-    [[nodiscard]] std::vector<Vec2> to_pixels(std::span<const Vec2> positions_m);
+    /// 0.5). A camera that moves is where it is at `time_s`. Throws what camera() throws.
+    [[nodiscard]] std::vector<Vec2> to_pixels(std::span<const Vec2> positions_m, double time_s = 0.0);
     /// True if the last picture was empty.
     [[nodiscard]] bool shows_nothing() const;
     /// The OpenGL driver. Throws kNoGl.

@@ -77,7 +77,6 @@ class FilmRenderer {
     pipeline::OwnedCanvas* lent_;
     std::unique_ptr<pipeline::DrawContext> context_;
     pipeline::SceneRenderer::Use use_;
-    CameraDef camera_;
 };
 
 /// The files that render_video() would write of a whole film under `name`, in memory: one video, or a picture

@@ -25,14 +25,6 @@ constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 /// Motion below this share of the scene's initial size, and of that per duration, is drawn as rest.
 constexpr double kStill = 1e-3;
 
-/// The first free end of a rope; without one, the first tracked particle.
-std::size_t tip_of(const System& system) {
-    const std::vector<std::size_t> ends = view::free_ends(system);
-    if (!ends.empty()) return ends.front();
-    const std::vector<TrackedParticle> tracked = tracked_particles(system);
-    return tracked.empty() ? 0 : tracked.front().particle;
-}
-
 std::size_t body_of(const System& system, std::size_t particle) {
     std::size_t body = 0;
     while (body + 1 < system.bodies.size() && system.bodies[body + 1].first_particle <= particle) ++body;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "corda/core/timeline.hpp"
 #include "corda/scene/scene.hpp"
 #include "corda/sim/auto/planner.hpp"
 #include "corda/sim/simulation.hpp"
@@ -23,6 +24,14 @@ namespace corda::pipeline {
 
 /// A time of a scene's motion in the form of time_within(); std::nullopt if the motion has no state then.
 [[nodiscard]] std::optional<double> motion_time_s(const Scene& scene, double time_s);
+
+/// The time of sub-frame `i` of an exposure at `time_s`, clipped to a motion that ends at `end_s`.
+[[nodiscard]] double subframe_s(const VideoDef& video, double time_s, double shutter, double end_s, int i);
+
+/// The times to record: those of frames, `times_s`, and those within exposures if they take at most half of
+/// the memory.
+[[nodiscard]] Timeline recorded_times(const Scene& scene, const System& system, std::vector<double> times_s,
+                                      std::size_t budget_bytes);
 
 /// Validates the input of a motion before anything is computed from it, because the reader of scene files has
 /// not checked a scene that is filled in by code. system_of() checks the bodies. Throws corda::Error:

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -10,10 +11,48 @@
 #include "corda/core/cancel.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/plan_text.hpp"
+#include "corda/pipeline/tracked_particle.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::pipeline {
+namespace {
+
+/// Half of the video time over which a followed place is averaged.
+constexpr double kSmoothSeconds = 0.2;
+constexpr double kMaxSmoothFrames = 100.0;
+
+/// The place of what the camera follows, relative to the system's origin.
+Vec2 followed_m(int follow, const System& system, const State& state) {
+    if (follow == CameraDef::kTip) {
+        const std::size_t tip = tip_of(system);
+        return {state.x_m[tip], state.y_m[tip]};
+    }
+    const Body& body = system.bodies[static_cast<std::size_t>(follow)];
+    Vec2 sum;
+    double mass_kg = 0.0;
+    for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
+        sum = sum + system.mass_kg[i] * Vec2{state.x_m[i], state.y_m[i]};
+        mass_kg += system.mass_kg[i];
+    }
+    return (1.0 / mass_kg) * sum;
+}
+
+/// Averages with weights that fall evenly to 0; the ends count as resting.
+std::vector<Vec2> smoothed(const std::vector<Vec2>& path, std::int64_t half) {
+    const std::int64_t last = std::ssize(path) - 1;
+    std::vector<Vec2> smooth;
+    for (std::int64_t k = 0; k <= last; ++k) {
+        Vec2 sum;
+        for (std::int64_t j = -half; j <= half; ++j)
+            sum = sum + static_cast<double>(half + 1 - std::abs(j)) *
+                            path[static_cast<std::size_t>(std::clamp<std::int64_t>(k + j, 0, last))];
+        smooth.push_back((1.0 / static_cast<double>((half + 1) * (half + 1))) * sum);
+    }
+    return smooth;
+}
+
+}  // namespace
 
 void Canvas::Delete::operator()(Canvas* canvas) const {
     const gl::SavedContext saved;
@@ -56,11 +95,51 @@ CameraDef SceneRenderer::fit(std::span<const MotionBounds> motion, const sim::Hi
                             scene_->video.height_px, overlay_.insets());
 }
 
+double SceneRenderer::height_about(std::span<const MotionBounds> motion) const {
+    const CameraDef about{Vec2{}, {}, scene_->camera.margin};
+    return view::fit_camera(about, {}, view_.drawn_bodies(motion), scene_->video.width_px,
+                            scene_->video.height_px, overlay_.insets())
+        .height_m.value();
+}
+
+view::CameraTrack SceneRenderer::track(double end_s,
+                                       const std::function<const State&(double time_s)>& state_at,
+                                       CameraDef& camera) const {
+    std::vector<view::CameraTrack::Key> keys;
+    for (const CameraKeyDef& key : scene_->camera.path)
+        keys.push_back(
+            {key.time_s, key.center_m.value_or(*camera.center_m), key.height_m.value_or(*camera.height_m)});
+    if (!scene_->camera.follow) return view::CameraTrack(std::move(keys));
+    std::vector<double> times_s;
+    std::vector<Vec2> path;
+    for (std::int64_t k = 0; k == 0 || scene_->video.scene_rate().time_s(k) <= end_s; ++k) {
+        times_s.push_back(scene_->video.scene_rate().time_s(k));
+        path.push_back(followed_m(*scene_->camera.follow, *system_, state_at(times_s.back())));
+    }
+    const double half = std::min(kSmoothSeconds * scene_->video.fps.per_second(), kMaxSmoothFrames);
+    path = smoothed(path, std::llround(half));
+    if (!scene_->camera.height_m) {
+        std::vector<MotionBounds> about(system_->particle_count());
+        for (std::size_t k = 0; k < times_s.size(); ++k) {
+            check_cancelled();
+            const State& state = state_at(times_s[k]);
+            for (std::size_t i = 0; i < about.size(); ++i)
+                about[i].include(state.x_m[i] - path[k].x, state.y_m[i] - path[k].y);
+        }
+        camera.height_m = height_about(about);
+    }
+    for (std::size_t k = 0; k < times_s.size(); ++k)
+        keys.push_back({times_s[k], system_->origin_m + path[k], *camera.height_m});
+    return view::CameraTrack(std::move(keys));
+}
+
 double SceneRenderer::largest_pixels_per_metre(const MotionBounds& bounds) const {
     const std::array<view::Drawn, 1> lines{{{.bounds = bounds}}};
-    return map_of(view::fit_camera(scene_->camera, system_->origin_m, lines, scene_->video.width_px,
-                                   scene_->video.height_px, overlay_.insets()))
-        .pixels_per_metre();
+    const double height_m =
+        *view::fit_camera(scene_->camera, system_->origin_m, lines, scene_->video.width_px,
+                          scene_->video.height_px, overlay_.insets())
+             .height_m;
+    return scene_->video.height_px / view::least_height_m(scene_->camera, height_m);
 }
 
 view::Camera SceneRenderer::map_of(const CameraDef& camera) const {

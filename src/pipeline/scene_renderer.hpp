@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -54,6 +55,12 @@ class SceneRenderer {
     /// quantity that colours show. Returns the scene's camera with center and height filled in, so that all
     /// is in view.
     CameraDef fit(std::span<const MotionBounds> motion, const sim::Histogram& histogram = {});
+    /// The path of the scene's camera, which moves. `camera`: centre and height of one that does not; it gets
+    /// the height of one that follows something, unless the scene gives that. `end_s`: end of the motion, at
+    /// whose frame times `state_at` is called in order.
+    [[nodiscard]] view::CameraTrack track(double end_s,
+                                          const std::function<const State&(double time_s)>& state_at,
+                                          CameraDef& camera) const;
     /// Sets the data of the live plot.
     void set_plot(const view::PlotData& data) { overlay_.set_plot(data, view_.body_colors()); }
     /// Lower bound on the scale of the camera that fit() returns for a motion within `bounds`.
@@ -117,6 +124,9 @@ class SceneRenderer {
     [[nodiscard]] const gl::Context& context() const { return canvas_->context; }
 
   private:
+    /// Height of a picture whose middle is the origin of these bounds of each particle, so that all bodies
+    /// are in view.
+    [[nodiscard]] double height_about(std::span<const MotionBounds> motion) const;
     void open(Needs needs);
     /// Fills list_ with a state and its traces, without the caption.
     void list(const State& state, const view::Camera& map, const Traces& traces);

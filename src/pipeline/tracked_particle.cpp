@@ -60,6 +60,13 @@ std::vector<TrackedParticle> tracked_particles(const System& system) {
     return all;
 }
 
+std::size_t tip_of(const System& system) {
+    const std::vector<std::size_t> ends = view::free_ends(system);
+    if (!ends.empty()) return ends.front();
+    const std::vector<TrackedParticle> tracked = tracked_particles(system);
+    return tracked.empty() ? 0 : tracked.front().particle;
+}
+
 std::size_t moving_count(const System& system) {
     return static_cast<std::size_t>(
         std::count_if(system.bodies.begin(), system.bodies.end(),

@@ -25,6 +25,9 @@ struct TrackedParticle {
 /// The tracked particles of the first kMaxBodies bodies that have free particles.
 [[nodiscard]] std::vector<TrackedParticle> tracked_particles(const System& system);
 
+/// The first free end of a rope; without one, the first tracked particle.
+[[nodiscard]] std::size_t tip_of(const System& system);
+
 /// Number of bodies with free particles.
 [[nodiscard]] std::size_t moving_count(const System& system);
 

@@ -35,7 +35,21 @@ py::array_t<double> to_pixels(PyFilm& film, const Points& points_m) {
     std::vector<Vec2> points;
     for (const double* at = points_m.data(); at != points_m.data() + points_m.size(); at += 2)
         points.push_back({at[0], at[1]});
-    const std::vector<Vec2> pixels = film.with_film([&](Film& its) { return its.to_pixels(points); });
+    const bool moves = film.constant().scene().camera.moves();
+    const std::int64_t frames = film.constant().frame_count();
+    if (moves && (points_m.ndim() != 3 || points_m.shape(0) != frames))
+        throw py::value_error(
+            "the camera moves: points are an array of shape (frames, ..., 2) of all frames");
+    const std::size_t per_frame = moves ? points.size() / static_cast<std::size_t>(frames) : points.size();
+    const std::vector<Vec2> pixels = film.with_film([&](Film& its) {
+        std::vector<Vec2> all;
+        for (std::int64_t k = 0; all.size() < points.size(); ++k) {
+            const auto some = std::span(points).subspan(all.size(), per_frame);
+            const std::vector<Vec2> mapped = its.to_pixels(some, its.time_s(k));
+            all.insert(all.end(), mapped.begin(), mapped.end());
+        }
+        return all;
+    });
     py::array_t<double> all(shape);
     double* to = all.mutable_data();
     for (const Vec2 pixel : pixels) {

@@ -31,6 +31,25 @@ std::vector<DefProblem> problems_of(const OverlayTextDef& text) {
          fmt::format("{} s is not after {} s, when it appears; give a later time", *text.to_s, text.from_s)}};
 }
 
+std::vector<DefProblem> problems_of(const CameraDef& camera, std::size_t bodies) {
+    if (camera.follow && !camera.path.empty())
+        return {
+            {"path", {}, "the camera follows something, or has a path; remove camera.follow or camera.path"}};
+    if (camera.follow && *camera.follow >= static_cast<int>(bodies))
+        return {
+            {"follow",
+             {},
+             fmt::format("{} is out of range; the ropes and nets are 0 .. {}", *camera.follow, bodies - 1)}};
+    for (std::size_t i = 1; i < camera.path.size(); ++i) {
+        if (camera.path[i].time_s <= camera.path[i - 1].time_s)
+            return {{"path",
+                     {},
+                     fmt::format("{} s after {} s; give times that increase", camera.path[i].time_s,
+                                 camera.path[i - 1].time_s)}};
+    }
+    return {};
+}
+
 std::vector<DefProblem> problems_of(const GoldenDef& golden) {
     std::vector<DefProblem> problems;
     for (std::size_t i = 1; i < golden.at_s.size(); ++i) {

@@ -169,7 +169,21 @@ std::vector<Key> overlay_text_keys() {
     };
 }
 
+/// The word for the free end of a rope, or an index.
+Binding followed() {
+    return custom_field<CameraDef>(
+        [](const Value& value, CameraDef& def) {
+            def.follow = value.node().is_string() ? CameraDef::kTip : value.as<int>();
+        },
+        [](const CameraDef& def) -> std::string {
+            if (!def.follow) return "";
+            return *def.follow == CameraDef::kTip ? toml_text("tip") : toml_text(*def.follow);
+        });
+}
+
 std::vector<Key> camera_keys() {
+    Type follow = integer(0, 2 * kMaxParticles);
+    follow.names = {"tip"};
     const auto fitted = [](const Binding& binding) { return otherwise("fits the whole motion", binding); };
     return {
         {"camera", "center", pair("[x, y]", kCoordinate), "m", fitted(field(&CameraDef::center_m)),
@@ -178,6 +192,23 @@ std::vector<Key> camera_keys() {
          fitted(field(&CameraDef::height_m)), "the height of the picture"},
         {"camera", "margin", number({.low = 0.0, .high = 0.45}), "", field(&CameraDef::margin),
          "the share of the shorter side left free at each edge"},
+        {"camera", "follow", follow, "", otherwise("the camera stays", followed()),
+         "the index of the rope or net that stays in the middle", "nets after ropes; in place of center"},
+        {"camera", "path", of(Kind::kTables), "", none(),
+         "path = [{ t = 0.0, height = 3.0 }, { t = 2.0, center = [1.0, -1.0], height = 1.0 }]",
+         "the camera moves smoothly from key to key"},
+    };
+}
+
+std::vector<Key> camera_path_keys() {
+    const std::string_view section = "camera.path";
+    return {
+        {section, "t", number(kFrom0), "s", required(field(&CameraKeyDef::time_s)), "the time of the key"},
+        {section, "center", pair("[x, y]", kCoordinate), "m",
+         otherwise("camera.center", field(&CameraKeyDef::center_m)),
+         "the position in the middle of the picture"},
+        {section, "height", number({.low = 1e-9, .high = 4 * Limits::kCoordinateMetres}), "m",
+         otherwise("camera.height", field(&CameraKeyDef::height_m)), "the height of the picture"},
     };
 }
 
@@ -213,8 +244,8 @@ std::vector<Key> golden_keys() {
 
 std::vector<Key> picture_rows() {
     std::vector<Key> rows;
-    for (const std::vector<Key>& part :
-         {video_keys(), style_keys(), overlay_keys(), overlay_text_keys(), camera_keys(), golden_keys()})
+    for (const std::vector<Key>& part : {video_keys(), style_keys(), overlay_keys(), overlay_text_keys(),
+                                         camera_keys(), camera_path_keys(), golden_keys()})
         rows.insert(rows.end(), part.begin(), part.end());
     return rows;
 }

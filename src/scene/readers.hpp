@@ -97,6 +97,8 @@ struct DefProblem {
 
 [[nodiscard]] std::vector<DefProblem> problems_of(const VideoDef& video);
 [[nodiscard]] std::vector<DefProblem> problems_of(const OverlayTextDef& text);
+/// `bodies`: number of ropes and nets.
+[[nodiscard]] std::vector<DefProblem> problems_of(const CameraDef& camera, std::size_t bodies);
 /// Golden times that do not increase, and pictures that are too large.
 [[nodiscard]] std::vector<DefProblem> problems_of(const GoldenDef& golden);
 

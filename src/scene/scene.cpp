@@ -27,10 +27,10 @@ Sections sections_of(const toml::table& document, Problems& problems) {
 }
 
 /// Reads a table whose keys are all that there is to its definition.
-template <class Def>
-void read_section(const TableReader& table, Def& def) {
+template <class Def, class... More>
+void read_section(const TableReader& table, Def& def, const More&... more) {
     read_fields(table, def);
-    for (const DefProblem& problem : problems_of(def)) {
+    for (const DefProblem& problem : problems_of(def, more...)) {
         const auto value = table.find(problem.key);
         if (!value) continue;
         if (problem.entry)
@@ -85,7 +85,9 @@ Scene parse_scene(std::string_view toml, const std::string& source_name,
     read_fields(sections.overlay, scene.overlay);
     for (const TableReader& text : sections.overlay.tables("texts"))
         read_section(text, scene.overlay.texts.emplace_back());
-    read_fields(sections.camera, scene.camera);
+    for (const TableReader& key : sections.camera.tables("path"))
+        read_fields(key, scene.camera.path.emplace_back());
+    read_section(sections.camera, scene.camera, sections.ropes.size() + sections.nets.size());
     if (document.contains("golden")) read_section(sections.golden, scene.golden.emplace());
     const SceneSize size = count_bodies(sections, solver, scene);
     check_work(sections, solver, size, scene);

@@ -169,16 +169,23 @@ std::vector<Table> solver_tables(const Scene& scene) {
     return bodies;
 }
 
+std::vector<Table> camera_tables(const CameraDef& camera) {
+    std::vector<Table> tables{table_of("camera", "camera", {part(camera)})};
+    for (std::size_t i = 0; i < camera.path.size(); ++i)
+        tables.push_back(table_of("camera.path", fmt::format("camera.path[{}]", i), {part(camera.path[i])}));
+    return tables;
+}
+
 /// The tables of one definition each. A scene's name and its jobs change no byte of a video.
 std::vector<Table> plain_tables(const Scene& scene) {
     std::vector<Table> tables{table_of("world", "world", {part(scene.world)}),
                               table_of("video", "video", {part(scene.video)}, {"jobs"}),
                               table_of("style", "style", {part(scene.style)}),
-                              table_of("camera", "camera", {part(scene.camera)}),
                               table_of("overlay", "overlay", {part(scene.overlay)})};
     for (std::size_t i = 0; i < scene.overlay.texts.size(); ++i)
         tables.push_back(
             table_of("overlay.texts", fmt::format("overlay.texts[{}]", i), {part(scene.overlay.texts[i])}));
+    for (Table& table : camera_tables(scene.camera)) tables.push_back(std::move(table));
     return tables;
 }
 
@@ -284,7 +291,8 @@ std::string write_scene(const Scene& scene) {
 std::string write_solver_and_camera(const Scene& scene) {
     std::string toml;
     for (const Table& table : solver_tables(scene)) toml += text_of(table);
-    return toml.substr(1) + text_of(table_of("camera", "camera", {part(scene.camera)}));
+    for (const Table& table : camera_tables(scene.camera)) toml += text_of(table);
+    return toml.substr(1);
 }
 
 Setting solver_setting(const Scene& scene) {
@@ -360,6 +368,8 @@ void check_definitions(const Scene& scene) {
     check_all("video", scene.video);
     for (std::size_t i = 0; i < scene.overlay.texts.size(); ++i)
         check_all(fmt::format("overlay.texts[{}]", i), scene.overlay.texts[i]);
+    for (const DefProblem& one : problems_of(scene.camera, scene.ropes.size() + scene.nets.size()))
+        problems.add({}, dotted("camera", one.key), one.problem);
     if (scene.golden) {
         check(table_of("golden", "golden", {part(*scene.golden)}));
         check_all("golden", *scene.golden);

@@ -57,7 +57,8 @@ constexpr std::array<Label, 7> kLabels{{
          std::vector<Vec2> points_m;
          for (std::size_t i = 0; i < state.x_m.size(); ++i)
              points_m.push_back({origin_m.x + state.x_m[i], origin_m.y + state.y_m[i]});
-         for (const Vec2 pixel : film.to_pixels(points_m)) append(std::array{pixel.x, pixel.y}, data);
+         for (const Vec2 pixel : film.to_pixels(points_m, state.time_s))
+             append(std::array{pixel.x, pixel.y}, data);
      }},
     {"mask", true,
      [](const Film& film) {

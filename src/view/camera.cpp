@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -97,12 +98,18 @@ class Axis {
 }  // namespace
 
 bool needs_motion(const CameraDef& def) {
-    return !def.center_m || !def.height_m;
+    return !def.center_m || !def.height_m || def.follow;
+}
+
+double least_height_m(const CameraDef& def, double height_m) {
+    double least_m = def.path.empty() ? height_m : HUGE_VAL;
+    for (const CameraKeyDef& key : def.path) least_m = std::min(least_m, key.height_m.value_or(height_m));
+    return least_m;
 }
 
 CameraDef fit_camera(const CameraDef& def, Vec2 origin_m, std::span<const Drawn> drawn, int width_px,
                      int height_px, const Insets& insets) {
-    if (!needs_motion(def)) return def;
+    if (def.center_m && def.height_m) return def;
     assert(!drawn.empty());
     std::vector<Span> across;
     std::vector<Span> upwards;
@@ -136,6 +143,55 @@ CameraDef fit_camera(const CameraDef& def, Vec2 origin_m, std::span<const Drawn>
     const Vec2 shift_m{0.5 * (right_px - border_px) / scale, 0.5 * (top_px - bottom_px) / scale};
     if (!def.center_m) fitted.center_m = origin_m + Vec2{x.middle_m(scale), y.middle_m(scale)} + shift_m;
     return fitted;
+}
+
+CameraTrack::CameraTrack(std::vector<Key> keys) : keys_(std::move(keys)), slopes_(keys_.size()) {
+    for (std::size_t i = 1; i + 1 < keys_.size(); ++i) {
+        const Key& a = keys_[i - 1];
+        const Key& b = keys_[i];
+        const Key& c = keys_[i + 1];
+        const double before_s = b.time_s - a.time_s;
+        const double after_s = c.time_s - b.time_s;
+        const auto slope = [&](double from, double at, double to) {
+            const double before = (at - from) / before_s;
+            const double after = (to - at) / after_s;
+            if (before * after <= 0.0) return 0.0;
+            const double w = 2.0 * after_s + before_s;
+            const double v = after_s + 2.0 * before_s;
+            return (w + v) / (w / before + v / after);
+        };
+        slopes_[i].center_m = {slope(a.center_m.x, b.center_m.x, c.center_m.x),
+                               slope(a.center_m.y, b.center_m.y, c.center_m.y)};
+        slopes_[i].height_m = slope(a.height_m, b.height_m, c.height_m);
+    }
+}
+
+CameraDef CameraTrack::at(const CameraDef& def, double time_s) const {
+    const auto later = std::upper_bound(keys_.begin(), keys_.end(), time_s,
+                                        [](double t, const Key& key) { return t < key.time_s; });
+    const auto i = static_cast<std::size_t>(later - keys_.begin());
+    CameraDef placed = def;
+    if (i == 0 || i == keys_.size()) {
+        const Key& key = i == 0 ? keys_.front() : keys_.back();
+        placed.center_m = key.center_m;
+        placed.height_m = key.height_m;
+        return placed;
+    }
+    const Key& a = keys_[i - 1];
+    const Key& b = keys_[i];
+    const double step_s = b.time_s - a.time_s;
+    const double t = (time_s - a.time_s) / step_s;
+    const auto between = [&](double from, double to, double from_slope, double to_slope) {
+        const double u = 1.0 - t;
+        return from + t * t * (3.0 - 2.0 * t) * (to - from) +
+               step_s * t * u * (u * from_slope - t * to_slope);
+    };
+    const Key& va = slopes_[i - 1];
+    const Key& vb = slopes_[i];
+    placed.center_m = {between(a.center_m.x, b.center_m.x, va.center_m.x, vb.center_m.x),
+                       between(a.center_m.y, b.center_m.y, va.center_m.y, vb.center_m.y)};
+    placed.height_m = between(a.height_m, b.height_m, va.height_m, vb.height_m);
+    return placed;
 }
 
 Camera::Camera(const CameraDef& def, Vec2 origin_m, int width_px, int height_px)

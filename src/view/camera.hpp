@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "corda/sim/system.hpp"
 #include "corda/view/defs.hpp"
@@ -26,14 +27,38 @@ struct Insets {
     double bottom_panel_px = 0.0;
 };
 
-/// True if the centre or the height is not given, so that it follows from the motion.
+/// True if the centre or the height is not given, or follows something, so that it depends on the motion.
 [[nodiscard]] bool needs_motion(const CameraDef& def);
+
+/// The smallest height of a camera's path; `height_m` for keys without one.
+[[nodiscard]] double least_height_m(const CameraDef& def, double height_m);
 
 /// Returns `def` with centre and height filled in so that everything drawn fits into a picture of this size,
 /// in the middle of the space that `insets` leave. Keeps the fields that `def` gives. `origin_m` is the
-/// system's. If needs_motion(def), `drawn` must not be empty.
+/// system's. If one is missing, `drawn` must not be empty.
 [[nodiscard]] CameraDef fit_camera(const CameraDef& def, Vec2 origin_m, std::span<const Drawn> drawn,
                                    int width_px, int height_px, const Insets& insets = {});
+
+/// The path of a moving camera: a monotone cubic through its keys in each coordinate, at rest at both ends
+/// (F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5, 300 (1984)).
+class CameraTrack {
+  public:
+    struct Key {
+        double time_s = 0.0;
+        Vec2 center_m;
+        double height_m = 0.0;
+    };
+    /// At least one key, in order of time.
+    explicit CameraTrack(std::vector<Key> keys);
+
+    /// `def` with centre and height at a time; before the first key those of the first, after the last those
+    /// of the last.
+    [[nodiscard]] CameraDef at(const CameraDef& def, double time_s) const;
+
+  private:
+    std::vector<Key> keys_;
+    std::vector<Key> slopes_;  ///< per second, at the keys
+};
 
 /// The map from metres (relative to the system's origin, y up) to pixels (y down).
 class Camera {

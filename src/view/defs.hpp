@@ -84,7 +84,7 @@ struct BodyStyleDef {
     std::vector<Color> link_colors;
     std::optional<double> width_px;  ///< 0.1 .. 1000; default: rope_width_px, or net_width_px for a net
     /// Drawn in one layer with the body before it: without a halo between them, and in a gradient of the
-    /// theme's colours along such a row, but for bodies with a colour of their own.
+    /// theme's colours along such a row, except bodies with a colour of their own.
     bool merged = false;
     std::string label;  ///< its name, drawn at its pin or its free end; empty: none
 };
@@ -116,11 +116,28 @@ struct OverlayDef {
     std::optional<double> text_px;
 };
 
+/// Camera position at one time. Fields that are not given are those of the CameraDef.
+struct CameraKeyDef {
+    double time_s = 0.0;  ///< >= 0
+    std::optional<Vec2> center_m = {};
+    std::optional<double> height_m = {};
+};
+
 /// Camera position. Fields that are not given are fitted to the whole motion.
 struct CameraDef {
-    std::optional<Vec2> center_m;    ///< middle of the picture, in world coordinates; -1e9 .. 1e9
-    std::optional<double> height_m;  ///< height of the picture in metres, 1e-9 .. 4e9
-    double margin = 0.08;            ///< free border at each edge, as a share of the shorter side; 0 .. 0.45
+    static constexpr int kTip = -1;
+
+    std::optional<Vec2> center_m = {};    ///< middle of the picture, in world coordinates; -1e9 .. 1e9
+    std::optional<double> height_m = {};  ///< height of the picture in metres, 1e-9 .. 4e9
+    double margin = 0.08;  ///< free border at each edge, as a share of the shorter side; 0 .. 0.45
+    /// Followed body, whose smoothed centre of mass is the middle of the picture in place of center_m: the
+    /// index of a rope or net, ropes first; or kTip, the free end of the first rope that has one. The height
+    /// is fitted to the bodies about it.
+    std::optional<int> follow = {};
+    /// The camera moves smoothly from key to key, without overshoot; times increase. Not with `follow`.
+    std::vector<CameraKeyDef> path = {};
+
+    [[nodiscard]] bool moves() const { return follow || !path.empty(); }
 };
 
 }  // namespace corda

@@ -198,8 +198,9 @@ int rounded(double px) {
     return static_cast<int>(std::lround(px));
 }
 
+constexpr double kEm = 1.0 / 40.0;
+
 int em_of(int side_px) {
-    constexpr double kEm = 1.0 / 40.0;
     constexpr double kSmallEm = 1.0 / 16.0;  // of frames in which kEm is too small to read
     constexpr double kReadablePx = 12.0;
     constexpr double kMinPx = 7.0;
@@ -208,8 +209,9 @@ int em_of(int side_px) {
 
 int em_of(int width_px, int height_px) {
     constexpr double kMaxLarger = 1.5;
+    const int side_px = std::min(width_px, height_px);
     const double larger = std::clamp(static_cast<double>(height_px) / width_px, 1.0, kMaxLarger);
-    return em_of(rounded(larger * std::min(width_px, height_px)));
+    return std::max(em_of(side_px), rounded(larger * kEm * side_px));
 }
 
 int edge_of(int side_px, int em_px) {

@@ -259,6 +259,12 @@ double SceneView::marker_radius_px(std::size_t body, bool pinned) const {
 }
 
 std::vector<Drawn> SceneView::drawn(std::span<const MotionBounds> motion) const {
+    std::vector<Drawn> all = drawn_bodies(motion);
+    supports_.list(all);
+    return all;
+}
+
+std::vector<Drawn> SceneView::drawn_bodies(std::span<const MotionBounds> motion) const {
     std::vector<Drawn> all;
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
         const Body& body = system_->bodies[b];
@@ -271,7 +277,6 @@ std::vector<Drawn> SceneView::drawn(std::span<const MotionBounds> motion) const 
         for (const Ball& ball : bodies_[b].balls)
             all.push_back(around(motion[ball.particle], ball.radius_px));
     }
-    supports_.list(all);
     return all;
 }
 

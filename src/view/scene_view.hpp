@@ -70,6 +70,8 @@ class SceneView {
     void set_motion(std::span<const MotionBounds> motion);
     /// Extents of everything drawn for particles that stay within `motion`.
     [[nodiscard]] std::vector<Drawn> drawn(std::span<const MotionBounds> motion) const;
+    /// The same without supports.
+    [[nodiscard]] std::vector<Drawn> drawn_bodies(std::span<const MotionBounds> motion) const;
 
     /// The colour of each body; of its first link if links differ.
     [[nodiscard]] std::vector<Color> body_colors() const;

@@ -68,6 +68,28 @@ TEST_F(ProvenanceOfFiles, FiguresAreReproducedByteForByte) {
     EXPECT_THAT(other.err, HasSubstr("was made by `corda sheet`"));
 }
 
+TEST_F(ProvenanceOfFiles, AuthoredVideosAreReproducedByteForByte) {
+    const std::string authored = folder().write(
+        "authored.toml",
+        "schema = 1\nworld = { duration = 0.2 }\n"
+        "[[rope]]\nhang = { particles = 4, length = 1.0, angle_deg = 30 }\nlabel = \"8 kg\"\n"
+        "copies = { count = 3, angle_deg = 5.0 }\n[camera]\npath = [{ t = 0.0 }, { t = 0.2, height = 1.0 }]\n"
+        "[overlay]\ntexts = [{ text = \"released\", to = 0.1 }]\n"
+        "[video]\nsize = [64, 48]\nfps = 30\nspeed = \"1/2\"\nloop = 2\n");
+    run({"render", authored, "--frames", "2:9", "-o", folder().file("a.mp4")});
+    run({"render", "--from", folder().file("a.mp4"), "-o", folder().file("b.mp4")});
+    expect_same("a.mp4", "b.mp4");
+    const auto verified = run_corda({"verify", folder().file("a.mp4")});
+    EXPECT_EQ(verified.exit_code, 0);
+    EXPECT_THAT(verified.out, HasSubstr("64x48, 7 frames at 30 per second"));
+    const auto portrait =
+        run_corda({"render", authored, "--size", "portrait", "-o", folder().file("c.mp4"), "--dry-run"});
+    EXPECT_THAT(portrait.err, HasSubstr("12 frames of 1080x1920 at 30 per second, at speed 1/2"));
+    const auto unknown = run_corda({"render", authored, "--size", "wide", "-o", folder().file("c.mp4")});
+    EXPECT_EQ(unknown.exit_code, 2);
+    EXPECT_THAT(unknown.err, HasSubstr("4k, 1080p, square or portrait"));
+}
+
 TEST_F(ProvenanceOfFiles, VideosAreReproducedByteForByte) {
     for (const std::string ending : {".mp4", ".mov", ".mkv", ".webm"}) {
         SCOPED_TRACE(ending);

@@ -32,7 +32,7 @@ Image reference_of(Film& film) {
     const view::DrawList sharp = test::draw_list_of(film, kTimeSeconds);
     const VideoDef& video = film.scene().video;
     if (video.shutter == 0.0) return render::render_reference(sharp);
-    const double half_s = 0.5 * video.shutter * video.fps.interval_s();
+    const double half_s = 0.5 * video.shutter * video.scene_rate().interval_s();
     const double from_s = kTimeSeconds - half_s;
     const double until_s = kTimeSeconds + half_s;
     std::vector<view::DrawList> exposed;

@@ -63,8 +63,12 @@ def test_a_method_without_tensions_gives_nan():
     assert np.isfinite(film.velocities).all()
 
 
-def test_pixel_coordinates_are_those_of_the_drawn_ball():
-    film = corda.Film(text=PENDULUM)
+CAMERAS = ["margin = 0.08", 'follow = "tip"', "path = [{ t = 0 }, { t = 1, center = [0.1, -0.2], height = 3 }]"]
+
+
+@pytest.mark.parametrize("camera", CAMERAS)
+def test_pixel_coordinates_are_those_of_the_drawn_ball(camera):
+    film = corda.Film(text=PENDULUM + "[camera]\n" + camera)
     pixels = film.to_pixels(film.positions)
     assert pixels.shape == film.positions.shape
     for k in (0, 7, 29):
@@ -72,6 +76,10 @@ def test_pixel_coordinates_are_those_of_the_drawn_ball():
         assert len(rows) > 50
         centroid = np.array([columns.mean() + 0.5, rows.mean() + 0.5])
         assert np.abs(centroid - pixels[k, 1]).max() < 0.3  # measured 0.16
+    if camera != CAMERAS[0]:
+        with pytest.raises(ValueError, match="of all frames"):
+            film.to_pixels(film.positions[3, 1])
+        return
     assert np.array_equal(film.to_pixels(film.positions[3, 1]), pixels[3, 1])
     with pytest.raises(ValueError, match="shape"):
         film.to_pixels([1.0, 2.0, 3.0])

@@ -170,6 +170,18 @@ const std::map<std::string, std::uint64_t> kHashes{
     {"blur_clear by auto", 0x4cb9e163ad3e968bU},
     {"blur_clear by exact", 0x3558fb47c0b166a3U},
     {"blur_clear by rattle", 0x2d329ad4f18fbb0cU},
+    {"copies as it is", 0xf9dad5951e6e13a3U},
+    {"copies by auto", 0xf9dad5951e6e13a3U},
+    {"copies by exact", 0xdf44676985f3caf3U},
+    {"copies by rattle", 0x629da51fbe1e1e2dU},
+    {"follow as it is", 0x3c6d0414a46f557dU},
+    {"follow by auto", 0x3c6d0414a46f557dU},
+    {"follow by exact", 0x2c032e1cf6540eefU},
+    {"follow by rattle", 0xbc1e4f78cfb488abU},
+    {"labels as it is", 0xa4b084df9bf2061aU},
+    {"labels by auto", 0xa4b084df9bf2061aU},
+    {"labels by exact", 0xa2ecb72cb0fa38ccU},
+    {"labels by rattle", 0x6d54c6289a331a49U},
 };
 
 /// Scenes that a method refuses, with a part of the message.

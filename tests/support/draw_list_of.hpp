@@ -46,7 +46,8 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
     view::SceneView scene_view(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, width_px,
                                height_px);
     scene_view.set_motion(motion);
-    view::Overlay overlay(scene.overlay, scene.style, width_px, height_px, scene.video.scene_rate().interval_s());
+    view::Overlay overlay(scene.overlay, scene.style, width_px, height_px,
+                          scene.video.scene_rate().interval_s());
     if (const auto quantity = quantity_of(scene.style.color_by)) {
         scene_view.set_scale(view::scale_of(*quantity, histogram, scene.style));
         overlay.set_scale(view::scale_of(*quantity, histogram, scene.style));
@@ -105,8 +106,8 @@ inline view::DrawList draw_list_of(Film& film, double time_s) {
     add_points(film, state, 0.0, trails);
     const view::Caption caption{
         time_s, film.figures().energy_error, method_caption(film.plan(), film.error_bound_px()), {}};
-    return draw_list_of(film.scene(), film.system(), film.camera(), state, motion, caption, trails, histogram,
-                        plotted_of(film));
+    return draw_list_of(film.scene(), film.system(), film.camera_at(time_s), state, motion, caption, trails,
+                        histogram, plotted_of(film));
 }
 
 }  // namespace corda::test

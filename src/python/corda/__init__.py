@@ -279,7 +279,8 @@ class Film:
         return self._film.energy()
 
     def to_pixels(self, positions):
-        """Positions in m, of shape (..., 2), in pixels of a frame, y down: a pixel's centre is at (column + 0.5, row + 0.5)."""
+        """Positions in m, of shape (..., 2), in pixels of a frame, y down: a pixel's centre is at (column + 0.5, row + 0.5).
+        If the camera moves, positions are those of all frames, of shape (frames, n, 2)."""
         return self._film.to_pixels(positions)
 
     def mask(self, k):

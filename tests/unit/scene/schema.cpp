@@ -30,6 +30,9 @@ Scene scene_with(const Key& key, const std::string& value) {
     if (key.section == "solver.bodies") toml += "[[solver.bodies]]\nropes = [0]\nmethod = \"exact\"\n";
     if (key.section == "solver.bodies" && key.name == "ropes")
         toml = "schema = 1\n" + grid + rope + "[[solver.bodies]]\nnets = [0]\nmethod = \"exact\"\n";
+    if (key.section == "rope.copies" && key.name != "count") toml += "[rope.copies]\ncount = 2\n";
+    if (key.section == "overlay.texts") toml += "[[overlay.texts]]\ntext = \"a\"\n";
+    if (key.section == "camera.path") toml += "[[camera.path]]\nt = 0\n";
     if (key.section == "golden" && key.name != "at") toml += "[golden]\nat = [0]\n";
     std::string path = path_of(key);
     if (const std::size_t list = path.find("[]"); list != std::string::npos) path.insert(list + 1, "0");

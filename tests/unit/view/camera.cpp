@@ -120,5 +120,25 @@ TEST(Camera, AFittedOneGivenAgainIsTheSame) {
     EXPECT_EQ(again.height_m, fitted.height_m);
 }
 
+TEST(CameraTrack, PassesItsKeysWithoutOvershootAndRestsAtItsEnds) {
+    const CameraTrack track(
+        {{1.0, {0.0, 5.0}, 4.0}, {2.0, {1.0, 5.0}, 1.0}, {4.0, {1.5, 7.0}, 2.0}, {5.0, {3.0, 6.0}, 2.0}});
+    const auto at = [&](double time_s) { return track.at({}, time_s); };
+    EXPECT_EQ(*at(0.0).center_m, (Vec2{0.0, 5.0}));
+    EXPECT_EQ(*at(2.0).center_m, (Vec2{1.0, 5.0}));
+    EXPECT_EQ(*at(9.0).center_m, (Vec2{3.0, 6.0}));
+    EXPECT_EQ(*at(2.0).height_m, 1.0);
+    double x = 0.0;
+    for (double t = 1.0; t <= 5.0; t += 0.01) {
+        EXPECT_GE(at(t).center_m->x, x) << t;
+        EXPECT_GE(at(t).center_m->y, 5.0) << t;
+        EXPECT_LE(at(t).center_m->y, 7.0) << t;
+        EXPECT_GE(*at(t).height_m, 1.0) << t;
+        x = at(t).center_m->x;
+    }
+    EXPECT_LT(at(1.01).center_m->x, 0.001);  // it starts at rest; measured 3.5e-4
+    EXPECT_GT(at(2.01).center_m->x, 1.004);  // and passes inner keys; measured 1.0048
+}
+
 }  // namespace
 }  // namespace corda::view
