@@ -42,6 +42,8 @@ std::string_view remedy(Refusal::Reason reason) {
         case Reason::kTautBetweenPins:
             return "let the rope sag between its pins (other points, or a string with a larger link_length), "
                    "or pin the particles between them too";
+        case Reason::kImplicit:
+            return "leave out solver.implicit";
         case Reason::kDependentBars:
             return "bend collinear bars a little, leave out bars that others imply, or use method "
                    "relaxation";

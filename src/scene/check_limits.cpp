@@ -266,8 +266,13 @@ struct Work {
     double updates = 0.0;  ///< of particles
 };
 
-Work work_of(const Scene& scene, const Body& body, const SolverDef& solver, double frequency_1_s) {
-    const MethodDef method = method_of(solver);
+Work work_of(const Scene& scene, const System& system, const Body& body, const SolverDef& solver,
+             double frequency_1_s) {
+    constexpr double kUsualTolerance = 1e-4;  // of `auto`, for 0.1 pixels
+    MethodDef method = method_of(solver);
+    if (std::holds_alternative<AutoDef>(solver) &&
+        sim::implicit_pays(system, body, scene.world, kUsualTolerance))
+        method = ExactDef{kUsualTolerance, true};
     Work work;
     work.steps = sim::expected_steps(method, body, frequency_1_s, scene.world.duration_s);
     work.updates =
@@ -293,7 +298,7 @@ void check_pace(const Sections& sections, const Scene& scene, const System& syst
     std::vector<Work> works;
     std::vector<double> shares;
     for (const Pace& pace : paces) {
-        const Work& work = works.emplace_back(work_of(scene, body, solver, pace.frequency_1_s));
+        const Work& work = works.emplace_back(work_of(scene, system, body, solver, pace.frequency_1_s));
         shares.push_back(
             std::min(Limits::kStepsOfAMotion / work.steps, Limits::kParticleUpdates / work.updates));
     }
@@ -411,7 +416,7 @@ std::string cost_notice(const Scene& scene) {
         const bool is_moved_by_rounding =
             std::holds_alternative<AutoDef>(solvers[i]) && body.particle_count > kLongRope;
         for (const Pace& pace : paces_of(scene, system, body, solvers[i], is_moved_by_rounding)) {
-            const Work work = work_of(scene, body, solvers[i], pace.frequency_1_s);
+            const Work work = work_of(scene, system, body, solvers[i], pace.frequency_1_s);
             const double pace_s = work.updates * of_net / kUpdatesPerSecond;
             if (pace_s <= body_s) continue;
             body_s = pace_s;

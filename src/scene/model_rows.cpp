@@ -221,6 +221,9 @@ std::vector<Key> method_keys(std::string_view section) {
     return {
         {section, "tolerance", number(kTolerance), "", field(&ExactDef::tolerance),
          "the position error relative to the length of the rope"},
+        {section, "implicit", of(Kind::kBoolean), "", field(&ExactDef::implicit),
+         "implicit steps, whose number does not grow with that of the links",
+         "for ropes that hang from one pin"},
         {section, "order", one_of(order_words(), Kind::kInteger), "", field(&RattleDef::order), "the order"},
         {section, "step", number({.low = 1e-9}), "s",
          otherwise("one frame; rattle: a stable part of one",

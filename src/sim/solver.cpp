@@ -13,6 +13,7 @@
 
 #include "corda/core/cancel.hpp"
 #include "corda/sim/exact/exact.hpp"
+#include "corda/sim/exact/radau_chain.hpp"
 #include "corda/sim/rattle/rattle.hpp"
 #include "corda/sim/relaxation/relaxation.hpp"
 #include "corda/sim/system.hpp"
@@ -313,6 +314,25 @@ double tension_frequency_1_s(const System& system, const Body& body, const Force
     for (std::size_t i = 0; i < load_n_m.size(); ++i)
         largest = std::max(largest, 2.0 * system.inverse_mass_1_kg[body.first_particle + i] * load_n_m[i]);
     return std::sqrt(largest);
+}
+
+double most_implicit_steps_1_s(const System& system, const Body& body, const Forces& forces) {
+    if (!ImplicitPart::can_move(system, body)) return 0.0;
+    bool is_after_pin = false;
+    for (const Bar& bar : bars_of(system, body)) {
+        is_after_pin = is_after_pin || system.is_pinned(bar.a);
+        const Vec2 along{system.x_m[bar.b] - system.x_m[bar.a], system.y_m[bar.b] - system.y_m[bar.a]};
+        const double down = dot(along, forces.uniform_m_s2());
+        if (is_after_pin ? down < 0.0 : down > 0.0) return 0.0;
+    }
+    const ExactDef def;
+    return Exact::step_cost_ns(def, body) / Exact::step_cost_ns({def.tolerance, true}, body) *
+           Exact::expected_steps(def, body, tension_frequency_1_s(system, body, forces, true), 1.0);
+}
+
+bool implicit_pays(const System& system, const Body& body, const Forces& forces, double tolerance) {
+    return Exact::expected_steps({tolerance, true}, body, tension_frequency_1_s(system, body, forces, true),
+                                 1.0) < most_implicit_steps_1_s(system, body, forces);
 }
 
 LoadMeter::LoadMeter(const System& system) {

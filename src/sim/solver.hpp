@@ -148,6 +148,14 @@ void validate(const MethodDef& method);
 [[nodiscard]] double tension_frequency_1_s(const System& system, const Body& body, const Forces& forces,
                                            bool is_moved_by_rounding = false);
 
+/// Number of implicit steps of `exact` per second that cost as much as explicit ones are expected to. 0 if
+/// they cannot move the body or are not tried: its links must lean down from its only pin.
+[[nodiscard]] double most_implicit_steps_1_s(const System& system, const Body& body, const Forces& forces);
+
+/// True if implicit steps are expected to be cheaper at this tolerance: for long ropes.
+[[nodiscard]] bool implicit_pays(const System& system, const Body& body, const Forces& forces,
+                                 double tolerance);
+
 /// Computes the loads on pins and links from positions and tensions.
 class LoadMeter {
   public:

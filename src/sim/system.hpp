@@ -177,9 +177,10 @@ class Refusal : public Error {
         kStretchedString,     ///< `exact`: a rigid link of a string longer at the start than its rest length
         kUndecidedString,     ///< `exact`: the start does not determine which links of a string are taut
         kTautBetweenPins,     ///< a rigid rope that is straight between two pins
-        kDependentBars,       ///< `rattle`: the lengths of rigid bars depend on each other
-        kMaterial,            ///< `relaxation`: compliance, a string or bending
-        kUnknownTensions,     ///< tensions are requested that the method does not know
+        kImplicit,         ///< `exact`, implicit: a body that does not hang from one pin, or resists bending
+        kDependentBars,    ///< `rattle`: the lengths of rigid bars depend on each other
+        kMaterial,         ///< `relaxation`: compliance, a string or bending
+        kUnknownTensions,  ///< tensions are requested that the method does not know
     };
 
     Refusal(Reason reason, const std::string& problem)

@@ -8,7 +8,7 @@
 #        tests/benchmark/run.sh study -o FOLDER [--chapter challenge,horizons] [--scenes N] [--repeats N]
 #        tests/benchmark/run.sh startup [--json] [--repeats N] [--beside PROGRAM]
 #   video  renders beside x264 alone: time, stages and memory; with --encodings, presets and codecs
-#   sim    the cost of each method against the number of particles
+#   sim    the cost of each method against the number of particles; long ropes by auto, with error and memory
 #   sweep  clips of a sweep with all labels: whole, and by stages
 #   draw   frames of examples/swing.toml in several styles
 #   long   energy and phase of a pendulum after 10 000 or PERIODS periods; a million take minutes
@@ -22,7 +22,7 @@ kind=${1:-}
 shift || true
 case "$kind" in
     video) programs=(video) ;;
-    sim) programs=(relaxation rattle exact nets) ;;
+    sim) programs=(relaxation rattle exact nets long_ropes) ;;
     draw) programs=(pipeline) ;;
     sweep) programs=(sweep) ;;
     long) programs=(long_runs) ;;

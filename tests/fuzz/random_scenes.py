@@ -28,7 +28,7 @@ ALLOWED = {0: "ok", 2: "usage", 3: "invalid scene", 5: "encoder", 8: "diverged",
            -signal.SIGTERM: "stopped before main()"}  # on a busy machine, loading the libraries takes longer than TIME_S
 MAX_PARTICLES = 60
 # The keys of [solver] that a method uses, which the schema does not contain. One scene in ten ignores this.
-METHOD_KEYS = {"auto": {"tolerance_px"}, "exact": {"tolerance"}, "rattle": {"order", "step"},
+METHOD_KEYS = {"auto": {"tolerance_px"}, "exact": {"tolerance", "implicit"}, "rattle": {"order", "step"},
                "relaxation": {"step", "reach", "sweeps", "delta", "force"}}
 
 

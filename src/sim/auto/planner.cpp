@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "corda/core/cancel.hpp"
@@ -55,8 +56,21 @@ bool has_kinks(const System& system) {
     });
 }
 
-/// Trials of `exact`, each a hundred times tighter than the last.
-std::vector<Trial> exact_trials(const System& system, double tolerance_m) {
+/// Trials with implicit steps, which only long ropes have, are each ten times tighter than the last.
+/// Positions err by about the tolerance, so a check at a quarter of it shows three quarters of the error,
+/// in 1.6 times as many steps.
+constexpr std::size_t kImplicitTrials = 3;
+constexpr std::size_t kMaxImplicitDigits = 7;
+constexpr double kLooser = 2.0;  ///< errors are 0.05 to 0.4 of the tolerance
+constexpr double kImplicitCheck = 0.25;
+
+bool is_implicit(const MethodDef& method) {
+    const auto* exact = std::get_if<ExactDef>(&method);
+    return exact != nullptr && exact->implicit;
+}
+
+/// Trials of `exact`, each a hundred times tighter than the last, after those with implicit steps.
+std::vector<Trial> exact_trials(const System& system, const WorldDef& world, double tolerance_m) {
     std::vector<Trial> trials;
     const TightestDigits& tightest = has_kinks(system) ? kWithKinks : kSmooth;
     // The links of a rigid net are many times as long as its way from end to end.
@@ -68,6 +82,14 @@ std::vector<Trial> exact_trials(const System& system, double tolerance_m) {
     const double wanted = tolerance_m / (is_rigid_net ? extent.x + extent.y : largest_length_m(system));
     std::size_t digits = kMaxDigits;
     while (digits < tightest.run && kTolerance[digits] > wanted) ++digits;
+    std::size_t first = kMaxDigits;
+    while (first < kMaxImplicitDigits && kTolerance[first] > kLooser * wanted) ++first;
+    for (std::size_t i = first; i < first + kImplicitTrials && i <= kMaxImplicitDigits; ++i) {
+        if (!implicit_pays(system, system.bodies.front(), world, kTolerance[i])) break;
+        Trial& trial = trials.emplace_back();
+        trial.method = ExactDef{kTolerance[i], true};
+        trial.check = ExactDef{kImplicitCheck * kTolerance[i], true};
+    }
     for (;; digits = std::min(digits + kNextDigits, tightest.run)) {
         Trial& trial = trials.emplace_back();
         trial.method = ExactDef{kTolerance[digits]};
@@ -117,13 +139,19 @@ double farther(const System& system, const Trial& last, std::size_t left, double
     return tightest_s < kEarly * end_s ? HUGE_VAL : factor;
 }
 
+/// Time by which the last trial reached farther than its looser predecessor; std::nullopt without one.
+std::optional<double> gain_s(const BodyPlan& plan) {
+    const std::size_t ran = plan.trials.size();
+    if (ran < 2 || is_implicit(plan.trials[ran - 2].method)) return std::nullopt;
+    return plan.trials[ran - 1].reached_s - plan.trials[ran - 2].reached_s;
+}
+
 /// The trial to run after number `failed`. Skips those that would not reach the end either: errors of chaotic
 /// motions grow exponentially, so each trial gains about as much time as its predecessor.
 std::size_t next_trial(const System& system, const BodyPlan& plan, std::size_t failed, std::size_t count,
                        double end_s) {
-    const std::size_t ran = plan.trials.size();
     const Trial& last = plan.trials.back();
-    const double gained_s = ran < 2 ? HUGE_VAL : last.reached_s - plan.trials[ran - 2].reached_s;
+    const double gained_s = gain_s(plan).value_or(HUGE_VAL);
     const double factor = farther(system, last, count - 1 - failed, end_s);
     const auto later_s = [&](double reached_s) { return std::min(reached_s + gained_s, reached_s * factor); };
     std::size_t next = failed + 1;
@@ -137,13 +165,13 @@ std::size_t next_trial(const System& system, const BodyPlan& plan, std::size_t f
 bool can_tell_little(const BodyPlan& plan, std::size_t failed, std::size_t count, double end_s) {
     constexpr double kLooseTolerance = 1e-6;
     constexpr std::size_t kRungs = 3;  // of `rattle`: orders 2 and 4 say little of 6 and 8
-    const std::size_t ran = plan.trials.size();
     const auto* exact = std::get_if<ExactDef>(&plan.trials.back().method);
-    if (ran < (exact == nullptr ? kRungs : 2) || (exact != nullptr && exact->tolerance > kLooseTolerance))
+    const std::optional<double> gained_s = gain_s(plan);
+    if (!gained_s || (exact == nullptr && plan.trials.size() < kRungs) ||
+        (exact != nullptr && exact->tolerance > kLooseTolerance))
         return false;
-    const double reached_s = plan.trials[ran - 1].reached_s;
-    const double gained_s = std::max(0.0, reached_s - plan.trials[ran - 2].reached_s);
-    return reached_s + static_cast<double>(count - 1 - failed) * gained_s < kEarly * end_s;
+    return plan.trials.back().reached_s + static_cast<double>(count - 1 - failed) * std::max(0.0, *gained_s) <
+           kEarly * end_s;
 }
 
 /// Records the run of a plan's method.
@@ -166,16 +194,23 @@ void record(const System& system, const WorldDef& world, const PlanDef& def, Bod
 void run_until_one_holds(const System& system, const WorldDef& world, const PlanDef& def,
                          std::vector<Trial> trials, BodyPlan& plan, Recording& recording) {
     const double end_s = def.timeline.time_s(def.timeline.size() - 1);
-    for (std::size_t i = 0; i < trials.size(); i = next_trial(system, plan, i, trials.size(), end_s)) {
-        const TrialKind kind{i == 0, i + 1 == trials.size()};
+    const auto next = [&](std::size_t failed) {
+        // Implicit ones are cheap and say little of explicit ones.
+        if (is_implicit(trials[failed].method)) return failed + 1;
+        return next_trial(system, plan, failed, trials.size(), end_s);
+    };
+    for (std::size_t i = 0;; i = next(i)) {
+        TrialKind kind{i == 0, i + 1 == trials.size()};
+        if (is_implicit(trials[i].method))
+            kind.most_steps_1_s = most_implicit_steps_1_s(system, system.bodies.front(), world);
         plan.method = trials[i].method;
         run_trial(system, world, def, kind, trials[i], recording, plan.passes);
         plan.trials.push_back(trials[i]);
         const std::size_t count = plan.trials.size();
-        if (trials[i].to_the_end) break;
+        if (trials[i].to_the_end || kind.is_last) break;
         const bool gives_up = can_tell_little(plan, i, trials.size(), end_s) ||
                               (count > 1 && give_up_together(plan.trials[count - 2], trials[i]));
-        if (kind.is_last || !gives_up) continue;
+        if (!gives_up || is_implicit(trials[i].method)) continue;
         record(system, world, def, plan, recording);
         plan.trials.back().steps = recording.diagnostics().steps;
         break;
@@ -263,7 +298,7 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
         plan.reason = PlanReason::kExact;
         MotionBounds start;
         start.include({0.0, system.x_m, system.y_m});
-        run_until_one_holds(system, world, def, exact_trials(system, def.tolerance_m(start)), plan,
+        run_until_one_holds(system, world, def, exact_trials(system, world, def.tolerance_m(start)), plan,
                             recording);
         return plan;
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -37,8 +38,9 @@ struct PlanDef {
 
 /// The place of a trial among those of a plan.
 struct TrialKind {
-    bool is_first = true;  ///< if of `rattle`, it has one check
-    bool is_last = true;   ///< its run will be drawn: it continues to the end without its checks
+    bool is_first = true;              ///< if of `rattle`, it has one check
+    bool is_last = true;               ///< its run will be drawn: it continues to the end without its checks
+    double most_steps_1_s = HUGE_VAL;  ///< fails if the run takes more
 };
 
 /// Runs the trial's method and its checks side by side, the checks in turned coordinates, so that their

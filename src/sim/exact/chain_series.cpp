@@ -317,7 +317,7 @@ double ChainSeries::sum(const Series& series, double t) const {
 }
 
 ChainPart::ChainPart(const System& system, const Forces& forces, double tolerance)
-    : Exact(system, forces, tolerance),
+    : Exact(system, forces, {tolerance}),
       dynamics_(system, system.bodies, forces),
       state_(dynamics_.initial_state()) {
     output_ = state_;

@@ -14,6 +14,7 @@
 #include "corda/sim/exact/chain_series.hpp"
 #include "corda/sim/exact/elastic_dynamics.hpp"
 #include "corda/sim/exact/net_dynamics.hpp"
+#include "corda/sim/exact/radau_chain.hpp"
 #include "corda/sim/exact/string/part.hpp"
 #include "corda/sim/system.hpp"
 
@@ -73,7 +74,7 @@ StepControl step_control(double inverse_timescale_1_s, double tolerance) {
 
 OdePart::OdePart(const System& system, const Forces& forces, std::unique_ptr<Dynamics> dynamics,
                  double tolerance)
-    : Exact(system, forces, tolerance, dynamics->initial_state()),
+    : Exact(system, forces, {tolerance}, dynamics->initial_state()),
       dynamics_(std::move(dynamics)),
       integrator_(*dynamics_, dynamics_->initial_state(), dynamics_->error_scales(),
                   step_control(dynamics_->inverse_timescale_1_s(), tolerance)) {}
@@ -86,16 +87,20 @@ Status OdePart::reach(double time_s, State& state) {
     return Status::kOk;
 }
 
-Exact::Exact(const System& system, const Forces& forces, double tolerance, std::vector<double> output)
+Exact::Exact(const System& system, const Forces& forces, const ExactDef& def, std::vector<double> output)
     : Solver(sim::energy_scale_j(system, forces.on_particles(system)), conserves_energy_in(system, forces)),
       output_(std::move(output)),
-      def_{tolerance} {
+      def_(def) {
     assert(system.bodies.size() == 1);
 }
 
 std::unique_ptr<Exact> Exact::make(const System& system, const Forces& forces, const ExactDef& def) {
     count_work(1 + system.particle_count());
     const Body& body = system.bodies.front();
+    if (def.implicit) {
+        refuse_imaginary_bars(system);
+        return std::make_unique<ImplicitPart>(system, forces, def);
+    }
     if (body.material.compliance_1_n > 0.0) {
         return std::make_unique<OdePart>(system, forces, std::make_unique<ElasticDynamics>(system, forces),
                                          def.tolerance);
@@ -123,10 +128,11 @@ const char* Exact::problem_of(const ExactDef& def) {
 }
 
 std::string Exact::text_of(const ExactDef& def) {
-    return fmt::format("exact at tolerance {:.3g}", def.tolerance);
+    return fmt::format("exact at tolerance {:.3g}{}", def.tolerance, def.implicit ? ", implicit steps" : "");
 }
 
-double Exact::step_cost_ns(const ExactDef& /*def*/, const Body& body) {
+double Exact::step_cost_ns(const ExactDef& def, const Body& body) {
+    if (def.implicit) return kParticleCostOfImplicitNs * static_cast<double>(body.particle_count);
     // A rigid string is searched for events in every step.
     constexpr double kOfAString = 2.5;
     constexpr double kOfANet = 0.032;  // grids of 30 x 30 to 200 x 200, times the root of their particles
@@ -136,6 +142,14 @@ double Exact::step_cost_ns(const ExactDef& /*def*/, const Body& body) {
                          : is_rigid && body.material.is_string ? kOfAString
                                                                : 1.0;
     return share * kParticleCostNs * particles;
+}
+
+double Exact::expected_steps(const ExactDef& def, const Body& body, double frequency_1_s, double time_s) {
+    if (!def.implicit) return Solver::expected_steps(def, body, frequency_1_s, time_s);
+    // The frequency of the shortest wave over twice the number of links is that of the whole rope.
+    constexpr double kStepsOfSwing = 12.0;  // at a tolerance of 1; they grow with its inverse fourth root
+    return kStepsOfSwing / std::sqrt(std::sqrt(def.tolerance)) * frequency_1_s * time_s /
+           (2.0 * static_cast<double>(body.link_count));
 }
 
 Status Exact::advance_to(double time_s, State& state) {

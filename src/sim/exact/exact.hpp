@@ -34,9 +34,12 @@ class Exact : public Solver {
     // Facts about the method: see solver.cpp.
     static constexpr bool kKnowsTensions = true;
     static constexpr double kParticleCostNs = 140.0;  ///< of a step of a rope, at 20 to 1000 particles
+    static constexpr double kParticleCostOfImplicitNs = 150.0;  ///< at 100 to 10 000; 200 at 100 000
     [[nodiscard]] static const char* problem_of(const ExactDef& def);
     [[nodiscard]] static std::string text_of(const ExactDef& def);
     [[nodiscard]] static double step_cost_ns(const ExactDef& def, const Body& body);
+    [[nodiscard]] static double expected_steps(const ExactDef& def, const Body& body, double frequency_1_s,
+                                               double time_s);
 
     Status advance_to(double time_s, State& state) final;
     [[nodiscard]] double energy_j() const override { return dynamics().energy_j(output_.data()); }
@@ -53,7 +56,7 @@ class Exact : public Solver {
     [[nodiscard]] virtual std::uint64_t rejected_steps() const { return 0; }
 
   protected:
-    Exact(const System& system, const Forces& forces, double tolerance, std::vector<double> output = {});
+    Exact(const System& system, const Forces& forces, const ExactDef& def, std::vector<double> output = {});
     /// The equations of motion at the last requested time.
     [[nodiscard]] virtual Dynamics& dynamics() const = 0;
     /// Writes the positions at a time, and the state of dynamics() to output_.

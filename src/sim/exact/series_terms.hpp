@@ -45,9 +45,10 @@ CORDA_INLINE void shift_down(const Four& here, const Four& after, Four& result) 
 /// For angles below this, cosine_sine() uses the polynomials alone.
 inline constexpr double kSmallAngle = 0.78;
 
-/// Cosine and sine of angles below kSmallAngle, with the bits of cosine_sine().
-CORDA_INLINE void cosine_sine_of_small(const Four& x, Four& cosine, Four& sine) {
-    const Four z = x * x;
+/// Cosine and sine of one or four angles below kSmallAngle, with the bits of cosine_sine().
+template <class X>
+CORDA_INLINE void cosine_sine_of_small(const X& x, X& cosine, X& sine) {
+    const X z = x * x;
     sine = x + x * z *
                    (-1.66666666666666324348e-01 +
                     z * (8.33333333332248946124e-03 +

@@ -93,7 +93,7 @@ void refuse_taut(const System& string) {
 
 StringPart::StringPart(const System& system, const Forces& forces, double tolerance,
                        std::vector<double> longer_m)
-    : Exact(system, forces, tolerance),
+    : Exact(system, forces, {tolerance}),
       forces_(forces),
       tolerance_(tolerance),
       offset_m_{system.x_m.front(), system.y_m.front()},

@@ -155,6 +155,35 @@ TEST(AutoPlans, ChooseAMethodPerBodyAndRecordWhatTheyMove) {
                 run.diagnostics().largest.energy_error.value(), 1e-15);
 }
 
+bool is_implicit(const MethodDef& method) {
+    return std::get<ExactDef>(method).implicit;
+}
+
+TEST(AutoPlan, TakesImplicitStepsForLongRopesThatHang) {
+    for (const double angle_deg : {0.0, 30.0}) {
+        const BodyPlan plan = plan_of(reference::straight_rope(1000, 1.0, angle_deg), 1.2e-4, 30);
+        EXPECT_TRUE(is_implicit(plan.method));
+        EXPECT_LE(plan.error_bound_m, 1.2e-4);
+        EXPECT_FALSE(plan.horizon_s);
+        EXPECT_EQ(plan.passes, 2);
+        EXPECT_LE(plan.trials.back().check_steps, 2 * plan.trials.back().steps);
+    }
+    EXPECT_FALSE(is_implicit(plan_of(reference::straight_rope(100, 1.0, 30.0), 1.2e-4, 30).method));
+    EXPECT_FALSE(is_implicit(plan_of(reference::straight_rope(400, 1.0, 91.0), 1.2e-4, 3).method));
+    EXPECT_FALSE(is_implicit(plan_of(reference::straight_rope(400, 1.0, 30.0), 1e-9, 3).method));
+}
+
+// Its vibrations are visible, and implicit steps would be as short as explicit ones.
+TEST(AutoPlan, TakesExplicitStepsForALongRopeThatIsRough) {
+    RopeDef rope = reference::straight_rope(400, 1.0, 30.0);
+    for (std::size_t i = 1; i < rope.points_m.size(); i += 2) rope.points_m[i].x += 1e-3;
+    const BodyPlan plan = plan_of(rope, 2e-4, 10);
+    EXPECT_TRUE(is_implicit(plan.trials.front().method));
+    EXPECT_FALSE(is_implicit(plan.method));
+    EXPECT_LE(plan.error_bound_m, 2e-4);
+    EXPECT_FALSE(plan.horizon_s);
+}
+
 TEST(AutoPlans, RunNamedMethodsUnchangedWithoutABound) {
     Mixed mixed;
     const NamedMethods named{RelaxationDef{}, std::nullopt};
