@@ -120,7 +120,9 @@ TEST(Trial, CoversBothOutcomesOfALinkThatBarelySnaps) {
         EXPECT_EQ(outcome.trial.to_the_end, tolerance_m == 1e-3);
         EXPECT_EQ(outcome.trial.undecided, tolerance_m == 1e-9);
         EXPECT_EQ(outcome.passes, 4);
-        if (outcome.trial.to_the_end) EXPECT_GT(outcome.trial.error_bound_m, 2e-7);  // what the snap changes
+        if (outcome.trial.to_the_end) {
+            EXPECT_GT(outcome.trial.error_bound_m, 2e-7);
+        }  // what the snap changes
     }
 }
 
