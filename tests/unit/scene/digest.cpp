@@ -70,8 +70,8 @@ TEST(Digest, NamesAllKeysThatDiffer) {
         differences(digest_of({"rope[0].hang.links=31", "world.drag=0.5", "solver.method=exact"}),
                     digest_of()),
         testing::ElementsAre(
-            "rope[0].hang.links is 31 and was 30", "solver.method is \"exact\" and was \"auto\"",
-            "solver.implicit is false and was not given", "solver.tolerance is 1e-9 and was not given",
+            "rope[0].hang.links is 31 and was 30", "solver.implicit is false and was not given",
+            "solver.method is \"exact\" and was \"auto\"", "solver.tolerance is 1e-9 and was not given",
             "world.drag is 0.5 and was 0", "solver.tolerance_px is not given and was 0.1"));
     EXPECT_EQ(differences_text({"a", "b"}), "a, b");
     EXPECT_EQ(differences_text(std::vector<std::string>(22, "a")).substr(54), "a, a, and 2 more");
