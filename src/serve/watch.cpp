@@ -217,6 +217,7 @@ void Watch::load() {
     publish(std::move(numbers), {{"name", its.scene().name},
                                  {"frames", its.frame_count()},
                                  {"fps", static_cast<double>(fps.num) / static_cast<double>(fps.den)},
+                                 {"frame_s", its.time_s(1)},
                                  {"width", video.width_px},
                                  {"height", video.height_px},
                                  {"full", {full_px.first, full_px.second}},

@@ -46,7 +46,7 @@ async function show(k) {
     frame = k;
     timeline.value = k;
     const number = film.number;
-    byId("time").textContent = `${(k / film.fps).toFixed(2)} s, frame ${k}`;
+    byId("time").textContent = `${(k * film.frame_s).toFixed(2)} s, frame ${k}`;
     byId("download").href = `frame/${k}.png?film=${number}`;
     byId("download").download = `frame-${k}.png`;
     markTime();
@@ -245,7 +245,7 @@ function drawCurves(title, unit, series) {
     const seekHere = (event) => {
         if (event.type === "pointermove" && event.buttons === 0) return;
         const box = picture.getBoundingClientRect();
-        seek((event.clientX - box.left) / box.width * curves.end * film.fps);
+        seek((event.clientX - box.left) / box.width * curves.end / film.frame_s);
     };
     picture.addEventListener("pointerdown", seekHere);
     picture.addEventListener("pointermove", seekHere);
@@ -259,7 +259,7 @@ async function readCurves() {
     const response = await fetch(`curves?film=${number}`);
     if (!response.ok || film.number !== number) return;
     curves = await response.json();
-    curves.end = Math.max(curves.t[curves.t.length - 1], 1 / film.fps);
+    curves.end = Math.max(curves.t[curves.t.length - 1], film.frame_s);
     const total = curves.kinetic_j.map((value, k) => value + curves.potential_j[k]);
     const figures = [];
     if (curves.angle_deg.length > 0) figures.push(drawCurves("Angle of the free end", "°", [["angle", curves.angle_deg]]));
@@ -271,7 +271,7 @@ async function readCurves() {
 
 function markTime() {
     if (!curves) return;
-    const x = frame / film.fps / curves.end * kWidth;
+    const x = frame * film.frame_s / curves.end * kWidth;
     for (const line of document.querySelectorAll("#curves .now")) {
         line.setAttribute("x1", x);
         line.setAttribute("x2", x);
