@@ -215,11 +215,13 @@ std::optional<Real> ExtendedMotion::event_within(Real step) {
         const Real slope = (4 * half[k] - 3 * start[k] - end[k]) / step;
         const Real curve = 2 * (start[k] - 2 * half[k] + end[k]) / (step * step);
         const Real top = -slope / (2 * curve);
-        if (!(curve < 0 && top > 0 && top < late.value_or(step))) continue;
+        // The parabola's top may be beyond an end that is near the true one.
+        if (!(curve < 0 && top > -step / 8 && top < late.value_or(step) + step / 8)) continue;
         const Real height = start[k] + slope * top / 2;
         const Real range = std::max({start[k], half[k], end[k]}) - std::min({start[k], half[k], end[k]});
         if (!(height > -range / 2)) continue;
-        const Real high = highest(k, std::max(Real{0}, top - step / 4), std::min(step, top + step / 4));
+        const Real high =
+            highest(k, std::max(Real{0}, top - step / 4), std::min(late.value_or(step), top + step / 4));
         if (margins(high).maxCoeff() >= 0) late = high;
     }
     if (!late) return std::nullopt;

@@ -351,7 +351,7 @@ class OtherSnaps {
         alone_.add(time_s, difference_m, bounds);
         const double margin_m = checks.margin_m();
         if (margin_m <= kSure * error_m && longer_m_ < std::max(kCovers * margin_m, error_m)) {
-            longer_m_ = kCovers * kSure * error_m;
+            longer_m_ = kCovers * std::max(margin_m, error_m);
             runs_.emplace(system_, forces_, *check_, longer_m_);
             passes += static_cast<int>(runs_->size());
         }

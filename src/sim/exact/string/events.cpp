@@ -176,9 +176,9 @@ std::optional<StringEvents::Sample> StringEvents::top(const Motion& motion, std:
         const double rise = (middle.margin - before.margin) / (middle.time_s - before.time_s);
         const double bend =
             ((after.margin - middle.margin) / (after.time_s - middle.time_s) - rise) / whole_s;
-        if (!(bend < 0.0)) return std::nullopt;
+        if (!(bend < 0.0)) return misses();
         double time_s = 0.5 * (before.time_s + middle.time_s) - 0.5 * rise / bend;
-        if (!(time_s > before.time_s && time_s < after.time_s)) return std::nullopt;
+        if (!(time_s > before.time_s && time_s < after.time_s)) return misses();
         const double expected =
             before.margin + (time_s - before.time_s) * (rise + bend * (time_s - middle.time_s));
         const double height = std::max(expected, middle.margin) - std::min(before.margin, after.margin);
