@@ -13,7 +13,8 @@ namespace {
 
 using testing::HasSubstr;
 
-Film film_of(const std::string& camera, const std::string& video = "", const char* angle_deg = "40") {
+Film film_with_camera(const std::string& camera, const std::string& video = "",
+                      const char* angle_deg = "40") {
     return Film(
         parse_scene("schema = 1\n[world]\nduration = 1.0\n"
                     "[[rope]]\nhang = { links = 4, length = 1.0, angle_deg = " +
@@ -23,9 +24,9 @@ Film film_of(const std::string& camera, const std::string& video = "", const cha
 }
 
 TEST(FilmCamera, OfAPathIsAtItsKeys) {
-    Film film =
-        film_of("path = [{ t = 0.0, center = [0.0, 0.0], height = 3.0 }, { t = 0.5, height = 1.0 }]\n");
-    Film still = film_of("center = [0.0, 0.0]\nheight = 3.0\n");
+    Film film = film_with_camera(
+        "path = [{ t = 0.0, center = [0.0, 0.0], height = 3.0 }, { t = 0.5, height = 1.0 }]\n");
+    Film still = film_with_camera("center = [0.0, 0.0]\nheight = 3.0\n");
     EXPECT_TRUE(test::equal_images(film.frame(0), still.frame(0)));
     const Vec2 base = *film.camera().center_m;
     EXPECT_EQ(film.to_pixels({{base}}, 0.7).at(0),
@@ -34,7 +35,7 @@ TEST(FilmCamera, OfAPathIsAtItsKeys) {
 }
 
 TEST(FilmCamera, ThatFollowsKeepsItInTheMiddleOfAllThatIsInView) {
-    Film film = film_of("follow = \"tip\"\n");
+    Film film = film_with_camera("follow = \"tip\"\n");
     for (const std::int64_t k : {0, 5, 20}) {
         const State state = film.state(k);
         std::vector<Vec2> points;
@@ -50,7 +51,7 @@ TEST(FilmCamera, ThatFollowsKeepsItInTheMiddleOfAllThatIsInView) {
         EXPECT_NEAR(tip.x, 48.0, 6.0) << k;
         EXPECT_NEAR(tip.y, 32.0, 6.0) << k;
     }
-    Film resting = film_of("follow = 0\n", "", "0");
+    Film resting = film_with_camera("follow = 0\n", "", "0");
     const Vec2 middle =
         resting.to_pixels({{Vec2{0.0, -0.5}}}, 0.5).at(0);  // of mass: 4 and the pin of 1 kg each
     EXPECT_NEAR(middle.x, 48.0, 1e-9);
@@ -61,8 +62,8 @@ TEST(FilmCamera, BlurFollowsTheMovingCamera) {
     const std::string path =
         "path = [{ t = 0.0, center = [-1.0, -0.5], height = 2.0 }, { t = 1.0, center = [1.0, -0.5], height = "
         "2.0 }]\n";
-    Film blurred = film_of(path, "shutter = 1.0\n", "0");
-    Film sharp = film_of(path, "", "0");
+    Film blurred = film_with_camera(path, "shutter = 1.0\n", "0");
+    Film sharp = film_with_camera(path, "", "0");
     // The rope rests, and the picture moves.
     EXPECT_FALSE(test::equal_images(blurred.frame(10), sharp.frame(10)));
     EXPECT_TRUE(test::equal_images(blurred.still(0.5), sharp.still(0.5)));
@@ -72,7 +73,7 @@ TEST(FilmCamera, IsWrittenAndFrozen) {
     for (const char* const camera :
          {"follow = \"tip\"\n", "follow = 0\nheight = 2.0\n",
           "path = [{ t = 0.0, height = 3.0 }, { t = 0.5, center = [1.0, 0.0] }]\n"}) {
-        Film film = film_of(camera);
+        Film film = film_with_camera(camera);
         Film again(parse_scene(write_scene(frozen_scene(film)), "again.toml"));
         EXPECT_TRUE(test::equal_images(again.frame(7), film.frame(7))) << camera;
     }
@@ -80,7 +81,7 @@ TEST(FilmCamera, IsWrittenAndFrozen) {
 
 TEST(FilmCamera, RefusesWhatItCannotDo) {
     const auto message_of = [](const std::string& camera) {
-        return test::failure_of([&] { static_cast<void>(film_of(camera)); }).message;
+        return test::failure_of([&] { static_cast<void>(film_with_camera(camera)); }).message;
     };
     EXPECT_THAT(message_of("follow = 1\n"),
                 HasSubstr("camera.follow: 1 is out of range; the ropes and nets are 0 .. 0"));

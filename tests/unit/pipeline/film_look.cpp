@@ -27,7 +27,7 @@ TEST(FilmLook, EqualsASceneOfThatLookWithoutAnotherRun) {
     look.video.height_px = 96;
     look.style.theme = Theme::kPaper;
     Film shown = FilmRenderer::another_look(film, look);
-    EXPECT_TRUE(equal_images(shown.still(0.75), Film(look).still(0.75)));
+    EXPECT_TRUE(test::equal_images(shown.still(0.75), Film(look).still(0.75)));
     EXPECT_EQ(film.still(0.75).width(), 192);
     EXPECT_EQ(film.simulation_passes(), 1);
     EXPECT_EQ(shown.simulation_passes(), 1);
@@ -61,7 +61,7 @@ TEST(FilmLook, DrawsKeptStatesBeyondTheBudgetWithoutAnotherRun) {
     FilmRenderer::keep(film, std::vector<double>{0.2, 0.5, 0.8});
     const int passes = film.simulation_passes();
     for (const double time_s : {0.8, 0.2, 0.5})
-        EXPECT_TRUE(equal_images(film.still(time_s), Film(scene).still(time_s)));
+        EXPECT_TRUE(test::equal_images(film.still(time_s), Film(scene).still(time_s)));
     EXPECT_EQ(film.simulation_passes(), passes);
 }
 
