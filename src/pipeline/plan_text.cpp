@@ -141,7 +141,10 @@ std::string nets_term(const Scene& scene) {
 
 std::string system_text(const System& system) {
     const std::int64_t nets = std::ssize(system.bodies) - static_cast<std::int64_t>(rope_count(system));
-    const std::string what = nets == 0 ? "" : counted(nets, "net") + ": ";
+    const auto ropes = static_cast<std::int64_t>(rope_count(system));
+    const std::string what = nets == 0    ? ""
+                             : ropes == 0 ? counted(nets, "net") + ": "
+                                          : counted(ropes, "rope") + ", " + counted(nets, "net") + ": ";
     return what + fmt::format("{}, {} ({} real)",
                               counted(static_cast<std::int64_t>(system.particle_count()), "particle"),
                               counted(std::ssize(system.bars), "bar"), system.link_count());

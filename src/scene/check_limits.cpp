@@ -307,13 +307,15 @@ void check_pace(const Sections& sections, const Scene& scene, const System& syst
     for (std::size_t k = 0; k < paces.size() && !has_problem; ++k) {
         if (shares[k] >= 1.0) continue;
         const Pace& pace = paces[k];
+        std::string advice = advice_for(pace, shares[k]);
+        if (scene.video.scene_rate().frame_count(allowed_s) >= 2)
+            advice += fmt::format(" or a duration of at most {} s", at_most(allowed_s));
+        else if (const std::size_t comma = advice.rfind(", "); comma != std::string::npos)
+            advice.replace(comma, 2, " or ");
         const std::string problem = fmt::format(
-            "{} so fast that {:g} s take some {:.2g} steps or {}, {} times the limit; give {}{}", pace.what,
+            "{} so fast that {:g} s take some {:.2g} steps or {}, {} times the limit; give {}", pace.what,
             scene.world.duration_s, works[k].steps, duration_text(works[k].updates / kUpdatesPerSecond),
-            about(std::ceil(1.0 / shares[k])), advice_for(pace, shares[k]),
-            scene.video.scene_rate().frame_count(allowed_s) < 2
-                ? ""
-                : fmt::format(" or a duration of at most {} s", at_most(allowed_s)));
+            about(std::ceil(1.0 / shares[k])), advice);
         if (pace.key_of_world != nullptr)
             fail_at(sections, {{&sections.world, pace.key_of_world}}, problem);
         else

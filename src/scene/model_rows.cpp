@@ -194,7 +194,7 @@ std::vector<Key> net_keys() {
         {"net.grid", "diagonals", boolean, "", field(&GridDef::has_diagonals),
          "two imaginary bars cross in each cell",
          "they keep cells from shearing: a rigid net becomes a plate, and one that stretches a stiff sheet; "
-         "without them it drapes"},
+         "without them it drapes, unless its pins hold a straight row of links"},
     };
 }
 
@@ -222,7 +222,7 @@ std::vector<Key> method_keys(std::string_view section) {
         {section, "tolerance", number(kTolerance), "", field(&ExactDef::tolerance),
          "the position error relative to the length of the rope"},
         {section, "implicit", of(Kind::kBoolean), "", field(&ExactDef::implicit),
-         "implicit steps, whose number does not grow with that of the links",
+         "implicit steps, whose number hardly grows with that of the links at tolerances of 1e-5 and more",
          "for ropes that hang from one pin"},
         {section, "order", one_of(order_words(), Kind::kInteger), "", field(&RattleDef::order), "the order"},
         {section, "step", number({.low = 1e-9}), "s",

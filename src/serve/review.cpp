@@ -87,10 +87,12 @@ Response Review::apply(const std::vector<std::string>& names) {
     def.new_folder.clear();
     def.only.clear();
     for (const Checked& picture : pictures_)
-        if (std::find(names.begin(), names.end(), picture.name) != names.end() &&
+        if (!picture.drawn_path.empty() &&
+            std::find(names.begin(), names.end(), picture.name) != names.end() &&
             !accepted_.contains(picture.name))
             def.only.push_back(picture.name);
-    if (def.only.empty()) return text_response(400, "no picture was chosen\n");
+    if (def.only.empty())
+        return text_response(400, "none of these can be accepted; golden --update removes stale pictures\n");
     const golden::SuiteResult result = golden::accept(def);
     accepted_.insert(def.only.begin(), def.only.end());
     return {200, "application/json", Json{{"changed", result.changed()}}.dump()};

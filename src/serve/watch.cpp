@@ -189,6 +189,10 @@ void Watch::load() {
         const std::lock_guard lock(mutex_);
         text_ = text;
         numbers_ = numbers;
+        std::erase_if(changes_, [&](const auto& change) {  // of a number that the file has no more
+            return std::none_of(numbers.begin(), numbers.end(),
+                                [&](const SceneNumber& number) { return number.key == change.first; });
+        });
     }
     Scene scene = parse_scene(text, def_.path, settings);
     const std::pair full_px(scene.video.width_px, scene.video.height_px);
@@ -437,6 +441,9 @@ Response Watch::write_file() {
     NumberChanges changes;
     {
         const std::lock_guard lock(mutex_);
+        if (is_busy_ || is_reload_asked_ || !problems_.empty())
+            return text_response(409,
+                                 "numbers are written once the scene with them is shown without errors\n");
         text = text_;
         changes = changes_;
     }

@@ -273,31 +273,14 @@ Scene diamond_scene(const std::string& solver, const std::string& low) {
 }
 
 TEST(BarsInLine, ARunThatFindsNoWayLeapsAndSaysSo) {
-    const Scene scene = diamond_scene("method = 'rattle'\norder = 2\nstep = 0.016666666666666666", "-1.4");
-    Simulation run(build_system({}, scene.nets), scene.world, RattleDef{2, 1.0 / 60.0});
-    ASSERT_EQ(run.advance_to(0.4), Status::kOk);
+    const Scene scene = diamond_scene("method = 'rattle'\norder = 2\nstep = 0.05", "-1.4");
+    Simulation run(build_system({}, scene.nets), scene.world, RattleDef{2, 0.05});
+    for (int k = 1; k <= 27; ++k) ASSERT_EQ(run.advance_to(k / 60.0), Status::kOk);
     EXPECT_EQ(run.diagnostics().branched_s, std::nullopt);
-    ASSERT_EQ(run.advance_to(0.5), Status::kOk);
-    EXPECT_EQ(run.diagnostics().branched_s, 0.5);
-    ASSERT_EQ(run.advance_to(2.0), Status::kOk);
-    EXPECT_EQ(run.diagnostics().branched_s, 0.5);
+    for (int k = 28; k <= 120; ++k) ASSERT_EQ(run.advance_to(k / 60.0), Status::kOk);
+    EXPECT_EQ(run.diagnostics().branched_s, 28.0 / 60.0);
     EXPECT_LT(run.diagnostics().largest.strain, 1e-14);               // 2.2e-15
     EXPECT_LT(run.diagnostics().largest.energy_error.value(), 1e-2);  // 3.0e-3
-}
-
-TEST(BarsInLine, NoBoundReachesBeyondALeap) {
-    Film film(diamond_scene("method = 'auto'", "-1.6"));  // no parallelogram
-    int branched = 0;
-    for (const Trial& trial : film.plan().bodies.front().trials) {
-        std::printf("%.0f steps: up to %g s\n", static_cast<double>(trial.steps), trial.reached_s);
-        Simulation run(film.system(), film.scene().world, trial.method);
-        ASSERT_EQ(run.advance_to(2.0), Status::kOk);
-        if (!run.diagnostics().branched_s) continue;
-        ++branched;
-        EXPECT_LT(trial.reached_s, *run.diagnostics().branched_s);
-        EXPECT_TRUE(trial.diverged);
-    }
-    EXPECT_GT(branched, 0);
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ def main():
     parser.add_argument("--figures")
     options = parser.parse_args()
     corda = os.path.abspath(options.corda)
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         scenes, kept, before = (os.path.join(folder, name) for name in ("scenes", "ref", "before"))
         os.mkdir(scenes)
         for name, text in (("long", SCENE), ("short", SCENE.replace("length = 1.0", "length = 0.5"))):

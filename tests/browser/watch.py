@@ -180,7 +180,7 @@ def main():
     parser.add_argument("--figures")
     options = parser.parse_args()
     corda = os.path.abspath(options.corda)
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         scene = os.path.join(folder, "scene.toml")
         with open(scene, "w", encoding="utf-8") as file:
             file.write(SCENE)

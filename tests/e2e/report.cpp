@@ -61,7 +61,7 @@ TEST_F(SceneReport, WritesAllFormatsWithReproducibleBytes) {
     const auto files = bytes_of(out_);
     EXPECT_EQ(answer["files"].size(), files.size());
     for (const char* id :
-         {"strobe", "still_1", "still_2", "path", "phase", "energy", "tension", "tension_along", "strain"}) {
+         {"strobe", "still_1", "still_2", "path", "angle", "phase", "energy", "tension", "tension_along"}) {
         for (const char* width : {"85mm", "170mm"}) {
             for (const char* ending : {"svg", "pdf", "png"})
                 EXPECT_TRUE(files.contains(std::string(id) + "_" + width + "." + ending)) << id;

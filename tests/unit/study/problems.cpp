@@ -97,8 +97,9 @@ TEST(Truth, SaysIfOnlyOneMethodOrNoneKnowsIt) {
     Subject cloth;
     cloth.problem.id = "cloth";
     NetDef rod;  // in line: its second bars imply more than equations of the first order know
-    rod.points_m = {{0.0, 0.0}, {1.0, -1.0}, {2.0, -2.0}};
-    rod.bars = {{0, 1}, {1, 2}, {0, 2, false}};
+    rod.points_m = {{0.0, 0.0}, {1.0, -1.0}, {2.0, -2.0}, {3.0, -1.5}, {4.0, -1.0}};
+    rod.bars = {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {0, 2, false}};
+    rod.pinned = {0, 4};  // a closed linkage, which exact does not know
     cloth.problem.nets = {rod};
     cloth.problem.world.duration_s = 0.1;
     find_truth(cloth);
