@@ -36,7 +36,7 @@ std::string hash_of(const std::string& path) {
 std::string hash_of(const Case& one, const Checked& picture) {
     std::string text =
         fmt::format("{} {}x{}\n", picture.time_s, one.scene.golden->width_px, one.scene.golden->height_px);
-    for (const auto& [key, value] : pixel_digest(one.scene)) text += key + "=" + value + "\n";
+    for (const auto& [key, value] : pixel_digest(one.scene)) text += fmt::format("{}={}\n", key, value);
     return hash_text(text);
 }
 

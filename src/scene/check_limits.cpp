@@ -297,12 +297,16 @@ void check_pace(const Sections& sections, const Scene& scene, const System& syst
     const std::vector<Pace> paces = paces_of(scene, system, body, solver);
     std::vector<Work> works;
     std::vector<double> shares;
+    const double frames = scene.world.duration_s * scene.video.scene_rate().per_second();
+    const double most_steps = std::max(Limits::kStepsOfAMotion, Limits::kStepsOfAFrame * frames);
+    double allowed_s = scene.world.duration_s;
     for (const Pace& pace : paces) {
         const Work& work = works.emplace_back(work_of(scene, system, body, solver, pace.frequency_1_s));
-        shares.push_back(
-            std::min(Limits::kStepsOfAMotion / work.steps, Limits::kParticleUpdates / work.updates));
+        const double most_updates = Limits::kParticleUpdates / work.updates;
+        shares.push_back(std::min(most_steps / work.steps, most_updates));
+        allowed_s = std::min(
+            allowed_s, scene.world.duration_s * std::min(Limits::kStepsOfAMotion / work.steps, most_updates));
     }
-    const double allowed_s = *std::min_element(shares.begin(), shares.end()) * scene.world.duration_s;
     bool has_problem = false;
     for (std::size_t k = 0; k < paces.size() && !has_problem; ++k) {
         if (shares[k] >= 1.0) continue;

@@ -25,8 +25,9 @@ struct Limits {
     static constexpr std::int64_t kSteps = 1'000'000'000;
     static constexpr double kBarUpdates = 1e13;       // about a day
     static constexpr double kParticleUpdates = 1e11;  // about four hours
-    static constexpr double kStepsOfAMotion =
-        1e7;  // estimated from its speed and vibrations; some seconds of a pendulum
+    // Estimated from speed and vibrations; the larger of both counts. Some seconds of a pendulum.
+    static constexpr double kStepsOfAMotion = 1e7;
+    static constexpr double kStepsOfAFrame = 1.5e4;
     static constexpr double kCoordinateMetres = 1e9;
 };
 

@@ -31,7 +31,7 @@ FileWatch::FileWatch(const std::string& path)
 bool FileWatch::wait(int timeout_ms) {
     pollfd events{inotify_.get(), POLLIN, 0};
     static_cast<void>(::poll(&events, 1, timeout_ms));
-    alignas(inotify_event) std::array<char, 4096> ignored;
+    alignas(inotify_event) std::array<char, 4096> ignored{};
     while (::read(inotify_.get(), ignored.data(), ignored.size()) > 0) continue;
     const Stamp now = stamp();
     return std::exchange(last_, now) != now;

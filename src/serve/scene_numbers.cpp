@@ -114,9 +114,11 @@ std::vector<Setting> settings_of(const NumberChanges& changes, const std::vector
 
 std::string with_changes(std::string text, const std::string& name, const NumberChanges& changes) {
     std::vector<Found> all = find_all(text, name);
-    for (const auto& [key, value] : changes)
-        if (std::none_of(all.begin(), all.end(), [&](const Found& its) { return its.number.key == key; }))
-            throw Error(ExitCode::kUsage, fmt::format("{} has no number {} any more", name, printable(key)));
+    for (const auto& change : changes)
+        if (std::none_of(all.begin(), all.end(),
+                         [&](const Found& its) { return its.number.key == change.first; }))
+            throw Error(ExitCode::kUsage,
+                        fmt::format("{} has no number {} any more", name, printable(change.first)));
     std::reverse(all.begin(), all.end());  // so that a change does not move the places of the others
     for (const auto& [number, region] : all) {
         const auto change = changes.find(number.key);

@@ -33,15 +33,15 @@ class Library {
         return library;
     }
 
-    decltype(&MHD_start_daemon) start_daemon;
-    decltype(&MHD_stop_daemon) stop_daemon;
-    decltype(&MHD_get_daemon_info) get_daemon_info;
-    decltype(&MHD_get_connection_values) get_connection_values;
-    decltype(&MHD_lookup_connection_value) lookup_connection_value;
-    decltype(&MHD_create_response_from_buffer) create_response_from_buffer;
-    decltype(&MHD_add_response_header) add_response_header;
-    decltype(&MHD_queue_response) queue_response;
-    decltype(&MHD_destroy_response) destroy_response;
+    decltype(&MHD_start_daemon) start_daemon = nullptr;
+    decltype(&MHD_stop_daemon) stop_daemon = nullptr;
+    decltype(&MHD_get_daemon_info) get_daemon_info = nullptr;
+    decltype(&MHD_get_connection_values) get_connection_values = nullptr;
+    decltype(&MHD_lookup_connection_value) lookup_connection_value = nullptr;
+    decltype(&MHD_create_response_from_buffer) create_response_from_buffer = nullptr;
+    decltype(&MHD_add_response_header) add_response_header = nullptr;
+    decltype(&MHD_queue_response) queue_response = nullptr;
+    decltype(&MHD_destroy_response) destroy_response = nullptr;
 
   private:
     Library() : handle_(dlopen("libmicrohttpd.so.12", RTLD_NOW | RTLD_LOCAL)) {

@@ -126,9 +126,10 @@ void NetDynamics::measure_inertia() {
     std::vector<Vec2> way(mass_kg_.size());
     std::vector<Vec2> beyond(mass_kg_.size());
     std::vector<double> beyond_kg = mass_kg_;
-    for (auto arm = arms_.rbegin(); arm != arms_.rend(); ++arm) {
-        moment_kg_m_[arm->group] = moment_kg_m_[arm->group] + beyond_kg[arm->particle] * arm->along_m;
-        beyond_kg[arm->parent] += beyond_kg[arm->particle];
+    for (std::size_t i = arms_.size(); i-- > 0;) {
+        const Arm& arm = arms_[i];
+        moment_kg_m_[arm.group] = moment_kg_m_[arm.group] + beyond_kg[arm.particle] * arm.along_m;
+        beyond_kg[arm.parent] += beyond_kg[arm.particle];
     }
     free_kg_ = std::accumulate(mass_kg_.begin(), mass_kg_.end(), 0.0);
     for (std::size_t h = 0; h < groups_; ++h) {
@@ -140,11 +141,12 @@ void NetDynamics::measure_inertia() {
             way[arm.particle] = way[arm.parent] + (arm.group == h ? arm.along_m : Vec2{});
             beyond[arm.particle] = mass_kg_[arm.particle] * way[arm.particle];
         }
-        for (auto arm = arms_.rbegin(); arm != arms_.rend(); ++arm) {
-            const Vec2 product = times({arm->along_m.x, -arm->along_m.y}, beyond[arm->particle]);
-            real_kg_m2_[arm->group * groups_ + h] += product.x;
-            imaginary_kg_m2_[arm->group * groups_ + h] += product.y;
-            beyond[arm->parent] = beyond[arm->parent] + beyond[arm->particle];
+        for (std::size_t i = arms_.size(); i-- > 0;) {
+            const Arm& arm = arms_[i];
+            const Vec2 product = times({arm.along_m.x, -arm.along_m.y}, beyond[arm.particle]);
+            real_kg_m2_[arm.group * groups_ + h] += product.x;
+            imaginary_kg_m2_[arm.group * groups_ + h] += product.y;
+            beyond[arm.parent] = beyond[arm.parent] + beyond[arm.particle];
         }
     }
     inertia_kg_m2_.assign(groups_ * groups_, 0.0);
@@ -166,10 +168,11 @@ void NetDynamics::set_start(const System& system) {
             fastest_m_s = std::max(fastest_m_s, length(system.vx_m_s[i], system.vy_m_s[i]));
     }
     std::vector<double> size_m(groups_ + 1, 0.0);
-    for (auto arm = arms_.rbegin(); arm != arms_.rend(); ++arm) {
-        right_[arm->group] += dot(left_of(arm->along_m), momentum[arm->particle]);
-        momentum[arm->parent] = momentum[arm->parent] + momentum[arm->particle];
-        size_m[arm->group] = std::max(size_m[arm->group], length(arm->along_m.x, arm->along_m.y));
+    for (std::size_t i = arms_.size(); i-- > 0;) {
+        const Arm& arm = arms_[i];
+        right_[arm.group] += dot(left_of(arm.along_m), momentum[arm.particle]);
+        momentum[arm.parent] = momentum[arm.parent] + momentum[arm.particle];
+        size_m[arm.group] = std::max(size_m[arm.group], length(arm.along_m.x, arm.along_m.y));
     }
     double* const y = initial_state_.data();
     if (is_free_) {

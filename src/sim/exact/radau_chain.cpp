@@ -385,15 +385,15 @@ void RadauChain::accept() {
 }
 
 double RadauChain::next_factor() {
-    constexpr double kSafety = 0.9;
+    constexpr double kCaution = 0.9;
     constexpr double kMinFactor = 0.125;
     constexpr double kMaxFactor = 8.0;
     constexpr double kEnough = 1.2;  // a change that is worth another matrix
     if (!solve_stages()) return -0.5;
     const double buckling = step_s_ * buckling_1_s();
-    if (buckling > 1.0) return -std::max(kMinFactor, kSafety / buckling);
+    if (buckling > 1.0) return -std::max(kMinFactor, kCaution / buckling);
     const double error = std::max(error_m() / tolerance_m_, kMinError);
-    const double safety = kSafety * (2 * kMaxIterations + 1) / (2 * kMaxIterations + iterations_);
+    const double safety = kCaution * (2 * kMaxIterations + 1) / (2 * kMaxIterations + iterations_);
     double factor = safety / std::sqrt(std::sqrt(error));
     if (!(error <= 1.0)) return -std::max(kMinFactor, factor);
     // Gustafsson's predictive controller.

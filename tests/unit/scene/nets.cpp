@@ -138,7 +138,7 @@ TEST(SceneNet, ComesAfterTheRopesWhereverItStands) {
     ASSERT_EQ(system.bodies.size(), 2U);
     EXPECT_FALSE(system.bodies[0].is_net);
     EXPECT_TRUE(system.bodies[1].is_net);
-    EXPECT_EQ(system_text(system), "1 net: 7 particles, 8 bars (6 real)");
+    EXPECT_EQ(system_text(system), "1 rope, 1 net: 7 particles, 8 bars (6 real)");
 }
 
 TEST(SceneNet, AloneIsAScene) {

@@ -141,12 +141,12 @@ TEST_F(WatchTest, NumbersChangeTheFilmAndTheFileOnlyWhenAsked) {
     EXPECT_EQ(state()["changes"], 0);
     EXPECT_EQ(post("number", {{"key", "rope[0].hang.angle_deg"}, {"value", nullptr}}).status, 200U);
 
-    const std::string before = test::read_file(path_);
+    const std::string file_before = test::read_file(path_);
     EXPECT_EQ(post("number", {{"key", "world.duration"}, {"value", -2}}).status, 200U);
     EXPECT_FALSE(state()["problems"].empty());
     EXPECT_EQ(post("write", Json::object()).status, 409U);  // of a number that the scene refuses
-    EXPECT_EQ(test::read_file(path_), before);
-    EXPECT_EQ(save(replaced(before, "duration = 1.0", ""))["changes"], 0);  // of a number that is gone
+    EXPECT_EQ(test::read_file(path_), file_before);
+    EXPECT_EQ(save(replaced(file_before, "duration = 1.0", ""))["changes"], 0);  // of a number that is gone
 }
 
 TEST_F(WatchTest, PicturesHaveTheSizeThatIsAskedFor) {
