@@ -94,7 +94,7 @@ Response Review::apply(const std::vector<std::string>& names) {
     if (def.only.empty())
         return text_response(400, "none of these can be accepted; golden --update removes stale pictures\n");
     const golden::SuiteResult result = golden::accept(def);
-    accepted_.insert(def.only.begin(), def.only.end());
+    for (const Checked& picture : result.pictures) accepted_.insert(picture.name);
     return {200, "application/json", Json{{"changed", result.changed()}}.dump()};
 }
 

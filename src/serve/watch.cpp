@@ -142,6 +142,7 @@ void Watch::work() {
     while (true) {
         std::optional<std::int64_t> frame;
         bool loads = false;
+        bool draws = false;
         {
             std::unique_lock lock(mutex_);
             changed_.wait(lock, [&] {
@@ -150,11 +151,12 @@ void Watch::work() {
             });
             if (is_ending_) break;
             loads = std::exchange(is_reload_asked_, false);
+            draws = frame && (!are_curves_wanted_ || wanted_.contains(*frame));
         }
         try {
             if (loads)
                 load();
-            else if (frame && (!are_curves_wanted_ || wanted_.contains(*frame)))
+            else if (draws)
                 draw(*frame);
             else
                 read_curves();
@@ -212,6 +214,15 @@ void Watch::load() {
     };
     Film film(scene, std::move(def));
     static_cast<void>(film.camera());  // simulates the motion
+    {
+        const std::lock_guard lock(mutex_);  // should the next renderer fail, there is no film
+        film_ = nullptr;
+        frames_ = 0;
+        ++film_number_;
+        wanted_.clear();
+        pictures_.clear();
+        picture_bytes_ = 0;
+    }
     shown_->renderer.reset();
     shown_->film.emplace(std::move(film));
     shown_->renderer.emplace(*shown_->film, &shown_->canvas);
@@ -323,8 +334,9 @@ std::optional<std::int64_t> Watch::next_frame() const {
     std::int64_t ahead = 0;
     while (pictures_.contains((playhead_ + ahead) % frames_)) ++ahead;
     const auto is_farther = [&](const auto& entry) { return distance(entry.first) > ahead; };
+    // Half of the room, so that a frame that is drawn ahead is not itself the first one to go.
     const bool has_room =
-        picture_bytes_ < kPictureBytes || std::any_of(pictures_.begin(), pictures_.end(), is_farther);
+        picture_bytes_ < kPictureBytes / 2 || std::any_of(pictures_.begin(), pictures_.end(), is_farther);
     return has_room ? std::optional((playhead_ + ahead) % frames_) : std::nullopt;
 }
 
