@@ -171,6 +171,30 @@ void Watch::work() {
     shown_.reset();  // on the thread of its OpenGL context
 }
 
+void Watch::forget_film() {
+    const std::lock_guard lock(mutex_);
+    film_ = nullptr;
+    frames_ = 0;
+    ++film_number_;
+    wanted_.clear();
+    pictures_.clear();
+    picture_bytes_ = 0;
+}
+
+OnProgress Watch::progress() {
+    return [this, shown = Clock::now()](std::int64_t done, std::int64_t total) mutable {
+        constexpr auto kSilent = std::chrono::milliseconds(300);
+        if (const auto now = Clock::now(); now - shown > kSilent) {
+            shown = now;
+            const std::lock_guard lock(mutex_);
+            progress_ = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0.0;
+            ++version_;
+            changed_.notify_all();
+        }
+        return true;
+    };
+}
+
 void Watch::load() {
     int side_px = 0;
     NumberChanges changes;
@@ -201,28 +225,10 @@ void Watch::load() {
     shrink(scene.video, side_px);
     FilmDef def = def_.film;
     def.readings.velocities = true;
-    def.on_progress = [this, shown = Clock::now()](std::int64_t done, std::int64_t total) mutable {
-        constexpr auto kSilent = std::chrono::milliseconds(300);
-        if (const auto now = Clock::now(); now - shown > kSilent) {
-            shown = now;
-            const std::lock_guard lock(mutex_);
-            progress_ = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0.0;
-            ++version_;
-            changed_.notify_all();
-        }
-        return true;
-    };
+    def.on_progress = progress();
     Film film(scene, std::move(def));
     static_cast<void>(film.camera());  // simulates the motion
-    {
-        const std::lock_guard lock(mutex_);  // should the next renderer fail, there is no film
-        film_ = nullptr;
-        frames_ = 0;
-        ++film_number_;
-        wanted_.clear();
-        pictures_.clear();
-        picture_bytes_ = 0;
-    }
+    forget_film();                     // should the next renderer fail, there is none
     shown_->renderer.reset();
     shown_->film.emplace(std::move(film));
     shown_->renderer.emplace(*shown_->film, &shown_->canvas);

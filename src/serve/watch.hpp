@@ -64,6 +64,8 @@ class Watch {
 
     void work();
     void load();
+    void forget_film();
+    [[nodiscard]] OnProgress progress();
     void publish(std::vector<SceneNumber> numbers, Json film);
     void fail(const std::string& message);
     void draw(std::int64_t k);
