@@ -179,6 +179,7 @@ void Watch::forget_film() {
     wanted_.clear();
     pictures_.clear();
     picture_bytes_ = 0;
+    curves_.reset();
 }
 
 OnProgress Watch::progress() {
@@ -208,7 +209,7 @@ void Watch::load() {
     }
     changed_.notify_all();
     const std::string text = scene::read_file(def_.path);
-    std::vector<SceneNumber> numbers = numbers_of(text, def_.path);
+    const std::vector<SceneNumber> numbers = numbers_of(text, def_.path);
     std::vector<Setting> settings = def_.settings;
     for (Setting& setting : settings_of(changes, numbers)) settings.push_back(std::move(setting));
     {
@@ -235,33 +236,28 @@ void Watch::load() {
     Film& its = *shown_->film;
     const VideoDef& video = its.scene().video;
     const Rational fps = video.fps.rational();
-    publish(std::move(numbers), {{"name", its.scene().name},
-                                 {"frames", its.frame_count()},
-                                 {"fps", static_cast<double>(fps.num) / static_cast<double>(fps.den)},
-                                 {"frame_s", its.time_s(1)},
-                                 {"width", video.width_px},
-                                 {"height", video.height_px},
-                                 {"full", {full_px.first, full_px.second}},
-                                 {"plan", plan_lines(its)}});
+    publish({{"name", its.scene().name},
+             {"frames", its.frame_count()},
+             {"fps", static_cast<double>(fps.num) / static_cast<double>(fps.den)},
+             {"frame_s", its.time_s(1)},
+             {"width", video.width_px},
+             {"height", video.height_px},
+             {"full", {full_px.first, full_px.second}},
+             {"plan", plan_lines(its)}});
 }
 
-void Watch::publish(std::vector<SceneNumber> numbers, Json film) {
+void Watch::publish(Json film) {
     std::int64_t playhead = 0;
     {
         const std::lock_guard lock(mutex_);
         frames_ = film["frames"].get<std::int64_t>();
         playhead = playhead_ = std::clamp<std::int64_t>(playhead_, 0, frames_ - 1);
-        wanted_.clear();
-        pictures_.clear();
-        picture_bytes_ = 0;
-        curves_.reset();
-        film["number"] = ++film_number_;
+        film["number"] = film_number_;
         film_ = std::move(film);
     }
     draw(playhead);  // before the page asks for it
     {
         const std::lock_guard lock(mutex_);
-        numbers_ = std::move(numbers);
         problems_ = Json::array();
         is_busy_ = false;
         ++version_;

@@ -66,7 +66,7 @@ class Watch {
     void load();
     void forget_film();
     [[nodiscard]] OnProgress progress();
-    void publish(std::vector<SceneNumber> numbers, Json film);
+    void publish(Json film);
     void fail(const std::string& message);
     void draw(std::int64_t k);
     void read_curves();
