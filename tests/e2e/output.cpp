@@ -292,7 +292,7 @@ method = "exact"
 )");
     const auto result = run_corda({"plan", scene});
     ASSERT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_THAT(result.out, HasSubstr("bodies: 1 net: 12 particles, 16 bars (12 real)\n"));
+    EXPECT_THAT(result.out, HasSubstr("bodies: 2 ropes, 1 net: 12 particles, 16 bars (12 real)\n"));
     for (const char* term :
          {"no drag: energy is lost only when a string comes taut", "links that do not stretch",
           "links that stretch by 0.25 .. 0.5 of their length per newton",
