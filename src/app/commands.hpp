@@ -98,6 +98,11 @@ struct SceneOptions {
     /// Throws corda::Error as load_scene does, but with kUsage if the scene is valid without the options
     /// other than --set: then the command line is wrong, not the scene.
     [[nodiscard]] Scene load(const Console& console) const;
+    /// The same of all scenes of a video: of a file with panels, their sizes are those that it has.
+    [[nodiscard]] std::vector<Scene> load_panels(const Console& console,
+                                                 const std::vector<std::string>& others) const;
+    /// True if the command line says video.size.
+    [[nodiscard]] bool gives_size() const;
     /// Parses the scene with the additional settings `more`; `text` and `name` are used if no scene file was
     /// given.
     [[nodiscard]] Scene parse(const std::vector<Setting>& more, std::string_view text,
@@ -107,6 +112,7 @@ struct SceneOptions {
 
   private:
     void check_size_from_file(const VideoDef& video) const;
+    [[nodiscard]] Scene load_from(const Provenance& origin) const;
 
     std::string from_;
     std::vector<Setting> of_options_;          ///< those of `settings` that did not come from --set

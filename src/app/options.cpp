@@ -166,10 +166,7 @@ void SceneOptions::check_size_from_file(const VideoDef& video) const {
     constexpr double kBytesPerPx = 12.0;         // measured: 775 MB for 16384x4096
     constexpr double kBytesPerEncodedPx = 25.0;  // 1640 MB by libx264 with the preset ultrafast
     const std::int64_t pixels = std::int64_t{video.width_px} * video.height_px;
-    const bool is_asked_for = std::any_of(settings.begin(), settings.end(), [](const std::string& setting) {
-        return setting.starts_with("video.size");
-    });
-    if (pixels <= kMaxUnaskedPx || is_asked_for) return;
+    if (pixels <= kMaxUnaskedPx || gives_size()) return;
     throw Error(
         ExitCode::kInvalidScene,
         fmt::format("{}: its scene asks for {}x{} pixels, which take some {:.1f} GB to draw and {:.1f} "
@@ -179,17 +176,40 @@ void SceneOptions::check_size_from_file(const VideoDef& video) const {
                     video.height_px));
 }
 
+bool SceneOptions::gives_size() const {
+    return std::any_of(settings.begin(), settings.end(),
+                       [](const Setting& setting) { return setting.starts_with("video.size"); });
+}
+
+Scene SceneOptions::load_from(const Provenance& origin) const {
+    return load_with(settings, of_options_,
+                     [&](const std::vector<Setting>& some) { return scene_of(origin, from_, some); });
+}
+
 Scene SceneOptions::load(const Console& console) const {
-    const auto read = [&] {
-        if (!is_from()) return parse({}, {}, {});
-        const Provenance& origin = provenance(console);
-        return load_with(settings, of_options_,
-                         [&](const std::vector<Setting>& some) { return scene_of(origin, from_, some); });
-    };
-    Scene scene = read();
+    Scene scene = is_from() ? load_from(provenance(console)) : parse({}, {}, {});
     if (is_from()) check_size_from_file(scene.video);
     if (const std::string notice = cost_notice(scene); !notice.empty()) console.info(notice);
     return scene;
+}
+
+std::vector<Scene> SceneOptions::load_panels(const Console& console,
+                                             const std::vector<std::string>& others) const {
+    const bool has_panels = is_from() && provenance(console).columns > 0;
+    std::vector<Scene> scenes;
+    if (has_panels) {
+        for (const Provenance& part : provenance(console).parts) scenes.push_back(load_from(part));
+        if (!gives_size()) check_size_from_file(panels_video(scenes, provenance(console).columns));
+    } else {
+        scenes.push_back(load(console));
+    }
+    SceneOptions other = *this;
+    for (const std::string& name : others) {
+        other.path = name;
+        other.text_.reset();
+        scenes.push_back(other.load(console));
+    }
+    return scenes;
 }
 
 Scene SceneOptions::parse(const std::vector<Setting>& more, std::string_view text,

@@ -1,6 +1,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -29,6 +30,8 @@ namespace {
 
 struct RenderOptions {
     SceneOptions scene;
+    std::vector<std::string> others;  ///< scenes of the panels after the first
+    std::string panels;
     GlOptions gl;
     EmptyPictures empty;
     std::string output;
@@ -92,10 +95,57 @@ std::string words_of_interruption(const RenderOptions& options, std::int64_t fir
                         : done;
 }
 
-nlohmann::json report(Film& film, const RenderOptions& options, const Rendered& rendered, double wall_s,
-                      const std::string& gl_renderer) {
-    const VideoDef& video = film.scene().video;
-    nlohmann::json json = film_json(film);
+/// The columns of the grid that `--panels` gives, or that of the file of `--from`; 1 without panels.
+int columns_of(const Console& console, const RenderOptions& options) {
+    if (options.scene.is_from()) return std::max(1, options.scene.provenance(console).columns);
+    const std::size_t scenes = options.others.size() + 1;
+    int columns = 1;
+    int rows = 1;
+    const bool is_read =
+        options.panels.empty() || (std::sscanf(options.panels.c_str(), "%4dx%4d", &columns, &rows) == 2 &&
+                                   fmt::format("{}x{}", columns, rows) == options.panels);
+    if (is_read && columns > 0 && rows > 0 && static_cast<std::size_t>(columns * rows) == scenes)
+        return columns;
+    throw Error(ExitCode::kUsage,
+                fmt::format("--panels {}: is no grid COLUMNSxROWS of {}; give e.g. --panels {}x1",
+                            options.panels, counted(std::ssize(options.others) + 1, "scene"), scenes));
+}
+
+/// The scenes, in the sizes of their panels.
+std::vector<Scene> load_scenes(const Console& console, const RenderOptions& options, int columns) {
+    std::vector<Scene> scenes = options.scene.load_panels(console, options.others);
+    VideoDef whole = scenes.front().video;
+    if (!options.scene.gives_size()) {
+        if (!options.scene.is_from())  // all get the size of the first one
+            for (Scene& scene : scenes) {
+                scene.video.width_px = whole.width_px;
+                scene.video.height_px = whole.height_px;
+            }
+        whole = panels_video(scenes, columns);
+        if (!options.pad) return scenes;
+    }
+    if (options.pad) {
+        whole.width_px += whole.width_px % 2;
+        whole.height_px += whole.height_px % 2;
+    }
+    lay_out_panels(scenes, columns, whole.width_px, whole.height_px);
+    return scenes;
+}
+
+/// That of the film, or of the film of each panel.
+nlohmann::json films_json(std::vector<Film>& films) {
+    if (films.size() == 1) return film_json(films.front());
+    nlohmann::json json{{"schema", 1}, {"panels", nlohmann::json::array()}};
+    for (Film& film : films) {
+        json["panels"].push_back(film_json(film));
+        json["panels"].back()["scene"] = film.scene().name;
+    }
+    return json;
+}
+
+nlohmann::json report(std::vector<Film>& films, const VideoDef& video, const RenderOptions& options,
+                      const Rendered& rendered, double wall_s, const std::string& gl_renderer) {
+    nlohmann::json json = films_json(films);
     json["output"] = options.output;
     json["frames"] = rendered.frames;
     json["resumed_frames"] = rendered.resumed_frames;
@@ -129,8 +179,10 @@ std::string endings_text() {
 }
 
 /// Warns if the output format falls back from its default, loses transparency or may fill the disk.
-void report_format(const Console& console, const Scene& scene, const CheckedOutput& output) {
-    const bool is_opaque = view::look_of(scene.style).ground.is_opaque();
+void report_format(const Console& console, const std::vector<Scene>& scenes, const CheckedOutput& output) {
+    const bool is_opaque = std::all_of(scenes.begin(), scenes.end(), [](const Scene& scene) {
+        return view::look_of(scene.style).ground.is_opaque();
+    });
     const media::Format& format = output.video().format;
     if (format.is_fallback) {
         console.warning(fmt::format("{}, the default of {}, is not available: encoding with {} ({})",
@@ -141,7 +193,7 @@ void report_format(const Console& console, const Scene& scene, const CheckedOutp
         console.warning(
             "a GIF has no half transparent pixels: edges will be hard; .webp and .apng keep them");
     const std::string warning =
-        media::disk_warning(format, output.path(), scene.video, output.end() - output.first());
+        media::disk_warning(format, output.path(), output.video().def, output.end() - output.first());
     if (!warning.empty()) console.warning(warning);
 }
 
@@ -198,13 +250,29 @@ void check_adjacent_pictures(const VideoDef& video, const std::string& output, s
     }
 }
 
+/// Simulates the scenes, and reports their plans.
+std::vector<Film> make_films(const Console& console, const std::vector<Scene>& scenes,
+                             const CheckedOutput& output, const FilmDef& def) {
+    const std::int64_t count = output.end() - output.first();
+    std::vector<Film> films;
+    for (const Scene& scene : scenes) {
+        Film& film = films.emplace_back(scene, def);
+        report_plan(console, film);
+        const VideoDef& video = film.scene().video;
+        console.info(fmt::format("{}: {}, method {}; {} of {}x{} at {} per second{}", film.scene().name,
+                                 system_text(film.system()), method_names(film.plan()),
+                                 counted(scenes.size() > 1 ? film.frame_count() : count, "frame"),
+                                 video.width_px, video.height_px, video.fps.rational().text(),
+                                 video.speed == Rational{1, 1} ? "" : ", at speed " + video.speed.text()));
+        static_cast<void>(film.camera());
+    }
+    return films;
+}
+
 ExitCode render(const Console& console, const RenderOptions& options) {
     const double start_s = now_s();
-    Scene scene = options.scene.load(console);
-    if (options.pad) {
-        scene.video.width_px += scene.video.width_px % 2;
-        scene.video.height_px += scene.video.height_px % 2;
-    }
+    const int columns = columns_of(console, options);
+    const std::vector<Scene> scenes = load_scenes(console, options, columns);
     RenderDef def;
     def.force = options.force;
     def.resume = options.resume;
@@ -212,36 +280,30 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     if (!options.shard.empty()) def.shard = parse_shard(options.shard);
     parse_range(range_of(console, options), def);
     check_standard_output(console, options.output);
-    const CheckedOutput output = check_render(scene, options.output, def, options.scene.input());
+    const CheckedOutput output = check_render(scenes, columns, options.output, def, options.scene.input());
+    const VideoDef& video = output.video().def;
     if (!options.frames.empty() && !options.force)
-        check_adjacent_pictures(scene.video, options.output, output.first(), output.end());
-    report_format(console, scene, output);
+        check_adjacent_pictures(video, options.output, output.first(), output.end());
+    report_format(console, scenes, output);
     OnProgress on_progress = show_progress(console, "simulate");
     FilmDef film_def;
     film_def.on_progress = [&](std::int64_t done, std::int64_t all) {
         return !on_progress || on_progress(done, all);
     };
     options.gl.apply_to(film_def);
-    Film film(scene, film_def);
-    report_plan(console, film);
-    const std::int64_t count = output.end() - output.first();
-    const VideoDef& video = film.scene().video;
-    console.info(fmt::format("{}: {}, method {}; {} of {}x{} at {} per second{}", film.scene().name,
-                             system_text(film.system()), method_names(film.plan()), counted(count, "frame"),
-                             video.width_px, video.height_px, video.fps.rational().text(),
-                             video.speed == Rational{1, 1} ? "" : ", at speed " + video.speed.text()));
-    static_cast<void>(film.camera());
+    std::vector<Film> films = make_films(console, scenes, output, film_def);
     if (options.dry_run) {
-        console.report(film_json(film));
+        console.report(films_json(films));
         return ExitCode::kOk;
     }
 
-    const GlInfo gl = film.gl();
+    const std::int64_t count = output.end() - output.first();
+    const GlInfo gl = films.front().gl();
     report_gl(console, gl);
     on_progress = {};  // from now on, simulation shows as frames that are drawn
     std::optional<Progress> progress(std::in_place, console, "render", count);
     if (is_one_file(options.output)) keep_words_of_parts(media::parts_path(options.output));
-    const Rendered rendered = render_video(film, output, [&](std::int64_t done, std::int64_t total) {
+    const Rendered rendered = render_video(films, output, [&](std::int64_t done, std::int64_t total) {
         progress->update(total > 0 ? done * count / total : done);
         return interruption() == ExitCode::kOk;
     });
@@ -251,11 +313,11 @@ ExitCode render(const Console& console, const RenderOptions& options) {
         throw Error(interruption(), words_of_interruption(options, output.first(), count, rendered));
     const double wall_s = now_s() - start_s;
     report_rendered(console, is_one_file(options.output) && !def.shard, rendered, wall_s);
-    warn_of_branch(console, film);
+    for (const Film& film : films) warn_of_branch(console, film);
     if (!def.end) warn_of_other_pictures(console, options.output, output.end());
     if (!is_standard_output(options.output))
         console.result(def.shard ? media::parts_path(options.output) : options.output);
-    console.report(report(film, options, rendered, wall_s, gl.renderer));
+    console.report(report(films, video, options, rendered, wall_s, gl.renderer));
     const EmptyPictures empty{options.empty.are_failures, rendered.empty_frames, rendered.first_empty_s};
     return empty.report(console, rendered.frames);
 }
@@ -266,6 +328,12 @@ void add_render(CLI::App& app, Action& action) {
     auto [command, options] = add_command(app, action, "render", "turn a scene into a video", render);
     options.scene.add_to(command);
     options.scene.add_from(command);
+    command.add_option("SCENES", options.others, "scenes of the other panels");
+    command
+        .add_option("--panels", options.panels,
+                    "show the scenes in a grid, row by row, in one film, whose size is --size")
+        ->type_name("COLUMNSxROWS")
+        ->excludes("--from");
     command.add_option("-o,--output", options.output, "the ending chooses the format: " + endings_text())
         ->required();
     options.scene.add_size(command);

@@ -135,8 +135,55 @@ Provenance parsed(const Json& json) {
     provenance.frames = json.value("frames", "");
     if (json.contains("picture")) provenance.picture = picture_of(json["picture"]);
     if (json.contains("golden")) provenance.golden = golden_of(json["golden"]);
+    provenance.columns = json.value("columns", 0);
+    for (const Json& part : json.value("parts", Json::array())) provenance.parts.push_back(parsed(part));
+    const auto columns = static_cast<std::size_t>(std::max(provenance.columns, 1));
+    if (provenance.columns < 0 || provenance.parts.size() % columns != 0)
+        throw Error(ExitCode::kUsage, "its panels are not what corda writes");
     if (!is_sound_name(provenance.name)) throw Error(ExitCode::kUsage, "its name is none of a scene");
     return provenance;
+}
+
+Json json_of(const Provenance& provenance) {
+    Json json{{"corda", provenance.corda}, {"name", provenance.name}};
+    if (!provenance.scene.empty()) json["scene"] = provenance.scene;
+    if (!provenance.left_out.empty()) json["left_out"] = provenance.left_out;
+    if (!provenance.frames.empty()) json["frames"] = provenance.frames;
+    if (provenance.picture) json["picture"] = json_of(*provenance.picture);
+    if (provenance.golden) json["golden"] = json_of(*provenance.golden);
+    for (const Provenance& part : provenance.parts) json["parts"].push_back(json_of(part));
+    if (provenance.columns > 0) json["columns"] = provenance.columns;
+    return json;
+}
+
+/// Removes all scenes.
+void leave_out(Provenance& provenance, const std::string& reason) {
+    provenance.scene.clear();
+    provenance.left_out = reason;
+    for (Provenance& part : provenance.parts) leave_out(part, "");
+}
+
+/// At most as many names of parts as are a sound name.
+std::string names_of(const std::vector<Provenance>& parts, const char* separator) {
+    std::string names;
+    for (const Provenance& part : parts)
+        if (names.size() + part.name.size() < kMaxName - 3)
+            names += (names.empty() ? "" : separator) + part.name;
+    return names;
+}
+
+/// Refuses a file without a scene, and one with several.
+void check_scene(const Provenance& provenance, const std::string& path) {
+    if (!provenance.parts.empty())
+        throw Error(
+            ExitCode::kUsage,
+            fmt::format("'{}' has several scenes ({}); {}", path, printable(names_of(provenance.parts, ", ")),
+                        provenance.columns > 0 ? "`corda render --from` repeats it"
+                                               : "give one of the videos that it was joined of"));
+    if (!provenance.scene.empty()) return;
+    fail_at(path,
+            fmt::format("does not carry its scene, because {}",
+                        provenance.left_out.empty() ? "it is damaged" : printable(provenance.left_out)));
 }
 
 /// Provenance in the texts of a PNG.
@@ -198,24 +245,26 @@ Provenance provenance_of(const Scene& scene) {
     return provenance;
 }
 
+Provenance provenance_of(std::span<const Scene> panels, int columns) {
+    if (panels.size() == 1) return provenance_of(panels.front());
+    std::vector<Provenance> parts;
+    for (const Scene& scene : panels) parts.push_back(provenance_of(scene));
+    return {
+        .corda = std::string(version()), .name = names_of(parts, " | "), .parts = parts, .columns = columns};
+}
+
 std::string provenance_text(Provenance provenance) {
     constexpr std::size_t kMaxReason = 500;
     if (provenance.picture &&
         (provenance.picture->times.size() > kMaxTimes || provenance.picture->film_times_s.size() > kMaxTimes))
         provenance.picture.reset();
     const auto text_of = [&] {
-        Json json{{"corda", provenance.corda}, {"name", provenance.name}};
-        if (!provenance.scene.empty()) json["scene"] = provenance.scene;
-        if (!provenance.left_out.empty()) json["left_out"] = provenance.left_out;
-        if (!provenance.frames.empty()) json["frames"] = provenance.frames;
-        if (provenance.picture) json["picture"] = json_of(*provenance.picture);
-        if (provenance.golden) json["golden"] = json_of(*provenance.golden);
-        return json.dump(-1, ' ', true, Json::error_handler_t::replace);
+        return json_of(provenance).dump(-1, ' ', true, Json::error_handler_t::replace);
     };
     if (provenance.left_out.size() > kMaxReason) provenance.left_out.resize(kMaxReason);
     std::string text = text_of();
     if (text.size() <= Provenance::kMaxBytes) return text;
-    provenance.scene.clear();
+    leave_out(provenance, provenance.left_out);
     const std::size_t others = text_of().size();
     provenance.left_out = fmt::format("the scene takes {} bytes, more than {}", text.size() - others,
                                       Provenance::kMaxBytes - std::min(others, Provenance::kMaxBytes));
@@ -257,15 +306,11 @@ Provenance read_provenance(const std::string& path) {
                                   printable(error.what())));
     }
     if (!provenance.picture) provenance.picture = frame_of_sequence(png.frame);
-    if (provenance.scene.empty()) {
-        fail_at(path,
-                fmt::format("does not carry its scene, because {}",
-                            provenance.left_out.empty() ? "it is damaged" : printable(provenance.left_out)));
-    }
     return provenance;
 }
 
 Scene scene_of(const Provenance& provenance, const std::string& path, const std::vector<Setting>& settings) {
+    check_scene(provenance, path);
     Scene scene = parse_scene(provenance.scene, path, settings);
     scene.name = provenance.name;
     return scene;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,8 @@ struct Provenance {
     std::string frames = {};    ///< of a video or a sequence of pictures: "FIRST:END"
     std::optional<PictureOrigin> picture = {};
     std::optional<GoldenRecord> golden = {};  ///< of a picture that `corda golden` keeps
+    std::vector<Provenance> parts = {};       ///< of a video of several scenes
+    int columns = 0;                          ///< of parts that are side by side; 0: they were joined
 };
 
 /// The keyword of the text in a PNG, and the key in the comment of a video.
@@ -73,6 +76,9 @@ inline constexpr const char* kProvenanceKey = "provenance";
 /// space or code alone can say it. No folder, host or date is part of it.
 [[nodiscard]] Provenance provenance_of(const Scene& scene);
 
+/// The same of scenes side by side.
+[[nodiscard]] Provenance provenance_of(std::span<const Scene> panels, int columns);
+
 /// As a JSON object of at most kMaxBytes: without the scene, or without the picture, if they do not fit.
 /// Positions of a golden picture are the bits of their numbers in hexadecimal.
 [[nodiscard]] std::string provenance_text(Provenance provenance);
@@ -81,11 +87,12 @@ inline constexpr const char* kProvenanceKey = "provenance";
 [[nodiscard]] Provenance provenance_in(const PngInfo& info);
 
 /// Reads what a PNG or a video carries; a video in a child process (see core/child_process.hpp).
-/// Throws corda::Error: kIo if the file cannot be read, kUsage if it carries nothing or no scene, or what it
-/// carries is damaged.
+/// Throws corda::Error: kIo if the file cannot be read, kUsage if it carries nothing, or what it carries is
+/// damaged.
 [[nodiscard]] Provenance read_provenance(const std::string& path);
 
-/// The scene of a file, with `settings` in place of what it says; messages name the file.
+/// The scene of a file, with `settings` in place of what it says; messages name the file. Throws corda::Error
+/// (kUsage) for one with no scene, or several.
 [[nodiscard]] Scene scene_of(const Provenance& provenance, const std::string& path,
                              const std::vector<Setting>& settings = {});
 

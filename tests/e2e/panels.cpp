@@ -1,0 +1,110 @@
+// `corda render --panels`: several scenes in one film.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "support/command.hpp"
+
+namespace corda {
+namespace {
+
+using test::read_file;
+using test::run_corda;
+using testing::HasSubstr;
+
+class SeveralScenes : public testing::Test {
+  protected:
+    [[nodiscard]] std::string file(const std::string& name) const { return folder_.file(name); }
+
+    /// A scene of 64x48 pixels at 10 frames per second, whose chunks are a second.
+    [[nodiscard]] std::string scene(const std::string& name, const std::string& duration,
+                                    const std::string& more = "") const {
+        return folder_.write(name + ".toml",
+                             "schema = 1\nworld = { duration = " + duration +
+                                 " }\n[[rope]]\nhang = { links = 6, length = 1.0, angle_deg = 30 }\n"
+                                 "[video]\nsize = [64, 48]\nfps = 10\n" +
+                                 more);
+    }
+
+    static void run(const std::vector<std::string>& arguments) {
+        const auto result = run_corda(arguments);
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+    }
+
+    static void expect_failure(const std::vector<std::string>& arguments, int exit_code,
+                               const std::string& words) {
+        const auto result = run_corda(arguments);
+        EXPECT_EQ(result.exit_code, exit_code) << result.err;
+        EXPECT_THAT(result.err, HasSubstr(words));
+    }
+
+    void expect_same(const std::string& a, const std::string& b) const {
+        EXPECT_TRUE(!read_file(file(a)).empty() && read_file(file(a)) == read_file(file(b)))
+            << a << " and " << b;
+    }
+
+    test::ScratchFolder folder_;
+};
+
+TEST_F(SeveralScenes, InPanelsAreOneFilm) {
+    const std::string a = scene("a", "4.5");
+    const std::string b = scene("b", "2", "shutter = 0.5\n");
+    const auto result = run_corda({"render", a, b, "--panels", "2x1", "--size", "100x48", "--jobs", "1",
+                                   "--json", "-o", file("c.mp4")});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const auto report = nlohmann::json::parse(result.out);
+    EXPECT_EQ(report["frames"], 45);
+    EXPECT_EQ(report["width"], 100);
+    ASSERT_EQ(report["panels"].size(), 2U);
+    EXPECT_EQ(report["panels"][1]["scene"], "b");
+    run({"verify", file("c.mp4")});
+    run({"render", "--from", file("c.mp4"), "-o", file("again.mp4")});
+    expect_same("again.mp4", "c.mp4");
+    const std::vector<std::string> command{"render", a,        b,    "--panels",   "2x1",
+                                           "--size", "100x48", "-o", file("d.mp4")};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), command.begin(), command.end());
+        return more;
+    };
+    run(with({"--dry-run"}));
+    run(with({"--shard", "1/2"}));
+    EXPECT_THAT(run_corda({"recover", file("d.mp4.parts")}).err, HasSubstr("chunk 0"));
+    expect_failure({"render", b, a, "--panels", "2x1", "--size", "100x48", "--resume", "-o", file("d.mp4")},
+                   2, "panel 1: ");
+    run(with({"--resume"}));
+    expect_same("d.mp4", "c.mp4");
+}
+
+TEST_F(SeveralScenes, InPanelsHaveTheSizeOfTheFirstEach) {
+    run({"render", scene("a", "0.2"), scene("b", "0.2", "pix = \"444\"\n"), "--panels", "1x2", "-o",
+         file("c.mp4")});
+    EXPECT_THAT(run_corda({"verify", file("c.mp4")}).out, HasSubstr("64x96, 2 frames at 10 per second"));
+}
+
+TEST_F(SeveralScenes, WithoutAGridOrOneClockAreRefused) {
+    const std::string a = scene("a", "1");
+    const std::string out = file("c.mp4");
+    expect_failure({"render", a, a, "-o", out}, 2,
+                   "--panels : is no grid COLUMNSxROWS of 2 scenes; give e.g. --panels 2x1");
+    expect_failure({"render", a, a, a, "--panels", "2x1", "-o", out}, 2,
+                   "--panels 2x1: is no grid COLUMNSxROWS of 3 scenes; give e.g. --panels 3x1");
+    for (const char* const panels : {"2", "2x", "0x1", "2x1x1", "-2x-1", "x", "99999999x1"})
+        EXPECT_EQ(run_corda({"render", a, a, std::string("--panels=") + panels, "-o", out}).exit_code, 2)
+            << panels;
+    const std::string other = folder_.write("b.toml",
+                                            "schema = 1\n[[rope]]\nhang = { links = 3, length = 1.0 }\n"
+                                            "[video]\nsize = [64, 48]\nfps = 20\n");
+    expect_failure({"render", a, other, "--panels", "2x1", "-o", out}, 2,
+                   "give all scenes the same video.fps (--fps)");
+    run({"render", a, other, "--panels", "2x1", "--fps", "20", "--duration", "0.1", "-o", out});
+    expect_failure({"still", "--from", out, "--at", "0", "-o", file("a.png")}, 2,
+                   "has several scenes (a, b); `corda render --from`");
+}
+
+}  // namespace
+}  // namespace corda
