@@ -1,3 +1,5 @@
+// `corda recover` and `join`: videos of chunks, and of videos.
+
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -11,6 +13,7 @@
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/media/chunks/join.hpp"
+#include "corda/pipeline/provenance.hpp"
 
 namespace corda::app {
 namespace {
@@ -56,7 +59,44 @@ ExitCode recover(const Console& console, const RecoverOptions& options) {
     return ExitCode::kOk;
 }
 
+struct JoinOptions {
+    std::vector<std::string> parts;
+    std::string output;
+    bool force = false;
+};
+
+ExitCode join(const Console& console, const JoinOptions& options) {
+    std::vector<Provenance> origins;
+    for (const std::string& part : options.parts) {
+        check_output(options.output, part, options.force);
+        origins.push_back(read_provenance(part));
+    }
+    const Provenance made = joined(origins);
+    const nlohmann::json comment{{"corda", version()},
+                                 {"scene", made.name},
+                                 {kProvenanceKey, nlohmann::json::parse(provenance_text(made))}};
+    const media::ChunkRun run = media::join_videos(options.parts, options.output, made.name, comment.dump(),
+                                                   {.force = options.force});
+    nlohmann::json parts = nlohmann::json::array();
+    for (const media::ChunkFile& part : run.chunks)
+        parts.push_back({{"file", part.path}, {"frames", part.frames}});
+    console.info(fmt::format("{} of {} videos; verified", counted(run.frames, "frame"), run.chunks.size()));
+    console.result(options.output);
+    console.report({{"schema", 1}, {"output", options.output}, {"frames", run.frames}, {"parts", parts}});
+    return ExitCode::kOk;
+}
+
 }  // namespace
+
+void add_join(CLI::App& app, Action& action) {
+    auto [command, options] = add_command(
+        app, action, "join", "join videos one after the other, without encoding them again", join);
+    command.add_option("FILES", options.parts, "two or more videos of equal size, rate and encoder settings")
+        ->required()
+        ->expected(-2);  // at least
+    command.add_option("-o,--output", options.output, "video file: .mp4, .mov, .mkv or .webm")->required();
+    command.add_flag("--force", options.force, "replace an existing output");
+}
 
 void add_recover(CLI::App& app, Action& action) {
     auto [command, options] = add_command(

@@ -253,6 +253,17 @@ Provenance provenance_of(std::span<const Scene> panels, int columns) {
         .corda = std::string(version()), .name = names_of(parts, " | "), .parts = parts, .columns = columns};
 }
 
+Provenance joined(const std::vector<Provenance>& videos) {
+    std::vector<Provenance> parts;
+    for (const Provenance& video : videos) {
+        if (video.parts.empty() || video.columns > 0)
+            parts.push_back(video);
+        else
+            parts.insert(parts.end(), video.parts.begin(), video.parts.end());
+    }
+    return {.corda = std::string(version()), .name = names_of(parts, ", "), .parts = parts};
+}
+
 std::string provenance_text(Provenance provenance) {
     constexpr std::size_t kMaxReason = 500;
     if (provenance.picture &&

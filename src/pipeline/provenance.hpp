@@ -79,6 +79,9 @@ inline constexpr const char* kProvenanceKey = "provenance";
 /// The same of scenes side by side.
 [[nodiscard]] Provenance provenance_of(std::span<const Scene> panels, int columns);
 
+/// The provenance of videos that were joined. Parts of a joined one become its own.
+[[nodiscard]] Provenance joined(const std::vector<Provenance>& videos);
+
 /// As a JSON object of at most kMaxBytes: without the scene, or without the picture, if they do not fit.
 /// Positions of a golden picture are the bits of their numbers in hexadecimal.
 [[nodiscard]] std::string provenance_text(Provenance provenance);

@@ -1,4 +1,4 @@
-// `corda render --panels`: several scenes in one film.
+// `corda render --panels` and `corda join`: several scenes in one film.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -46,6 +46,12 @@ class SeveralScenes : public testing::Test {
     void expect_same(const std::string& a, const std::string& b) const {
         EXPECT_TRUE(!read_file(file(a)).empty() && read_file(file(a)) == read_file(file(b)))
             << a << " and " << b;
+    }
+
+    /// Makes the parts a.mp4 and b.mp4 of joined videos.
+    void render_parts(const std::string& ending = ".mp4") const {
+        run({"render", scene("a", "1.3"), "-o", file("a" + ending)});
+        run({"render", scene("b", "0.4"), "--frames", "1:4", "-o", file("b" + ending)});
     }
 
     test::ScratchFolder folder_;
@@ -104,6 +110,72 @@ TEST_F(SeveralScenes, WithoutAGridOrOneClockAreRefused) {
     run({"render", a, other, "--panels", "2x1", "--fps", "20", "--duration", "0.1", "-o", out});
     expect_failure({"still", "--from", out, "--at", "0", "-o", file("a.png")}, 2,
                    "has several scenes (a, b); `corda render --from`");
+}
+
+TEST_F(SeveralScenes, AreJoinedOneAfterTheOther) {
+    for (const std::string ending : {".mp4", ".mov", ".mkv"}) {
+        render_parts(ending);
+        const std::string a = file("a" + ending);
+        const std::string b = file("b" + ending);
+        const auto result = run_corda({"join", a, b, "-o", file("c" + ending), "--json"});
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+        const auto report = nlohmann::json::parse(result.out);
+        EXPECT_EQ(report["frames"], 16);
+        EXPECT_EQ(report["parts"][0]["frames"], 13);
+        EXPECT_THAT(run_corda({"verify", file("c" + ending)}).out, HasSubstr("16 frames at 10 per second"));
+        run({"join", a, b, "-o", file("d" + ending)});
+        expect_same("c" + ending, "d" + ending);
+        run({"join", file("c" + ending), a, "-o", file("e" + ending)});
+        expect_failure({"render", "--from", file("e" + ending), "-o", file("f.mp4")}, 2,
+                       "has several scenes (a, b, a); give one of the videos");
+    }
+}
+
+TEST_F(SeveralScenes, AreJoinedOnlyIfTheyAgree) {
+    render_parts();
+    const std::string a = file("a.mp4");
+    const std::string out = file("c.mp4");
+    const std::string toml = scene("b", "0.4");
+    const std::string b = file("other.mp4");
+    const auto expect_refused = [&](const std::vector<std::string>& settings, const std::string& words) {
+        std::vector<std::string> command{"render", toml, "--force", "-o", b};
+        command.insert(command.end(), settings.begin(), settings.end());
+        run(command);
+        expect_failure({"join", a, b, "-o", out}, 7, words);
+    };
+    expect_refused({"--size", "80x48"}, "its size (--size) is 80x48 and not 64x48");
+    expect_refused({"--fps", "20"}, "its rate (--fps) is 20 and not 10");
+    expect_refused({"--pix", "444"}, "its codec (--codec, --pix) is h264 High 4:4:4");
+    expect_refused({"--crf", "30"}, "other settings (--preset, --crf)");
+    run({"render", toml, "-o", file("b.webm")});
+    expect_failure({"join", a, file("b.webm"), "-o", out}, 7, "its codec (--codec, --pix) is vp9");
+    expect_failure({"join", a, a, "-o", file("c.webm")}, 2, "cannot be made of h264");
+    expect_failure({"join", a, a, "-o", file("c.gif")}, 2, "no video that can be joined");
+    expect_failure({"join", a, a, "-o", a, "--force"}, 2, "would replace the input");
+    expect_failure({"join", a, "-o", out}, 2, "FILES");
+    EXPECT_EQ(read_file(out), "");
+}
+
+TEST_F(SeveralScenes, AreNotJoinedOfDamagedFiles) {
+    render_parts();
+    const std::string a = file("a.mp4");
+    const std::string whole = read_file(a);
+    const std::string b = file("other.mp4");
+    const auto expect_refused = [&](const std::string& bytes, int exit_code) {
+        test::write_file(b, bytes);
+        const auto result = run_corda({"join", a, b, "-o", file("c.mp4")});
+        EXPECT_EQ(result.exit_code, exit_code) << result.err;
+        EXPECT_EQ(read_file(file("c.mp4")), "");
+    };
+    expect_refused("no video", 6);
+    expect_refused(whole.substr(0, whole.size() - 100), 7);
+    std::string flipped = whole;
+    flipped[whole.size() - 40] ^= 0x55;
+    expect_refused(flipped, 7);
+    expect_failure({"join", a, file("missing.mp4"), "-o", file("c.mp4")}, 6, "missing.mp4");
+    test::write_file(file("c.mp4"), "precious");
+    expect_failure({"join", a, a, "-o", file("c.mp4")}, 6, "--force");
+    run({"join", a, a, "--force", "-o", file("c.mp4")});
 }
 
 }  // namespace

@@ -1,10 +1,13 @@
 #include "corda/media/chunks/join.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -31,6 +34,15 @@ namespace {
         fmt::format("'{}' is damaged: {}; remove it, and make it again (--resume)", file.path, reason));
 }
 
+[[noreturn]] void fail_differing(const std::string& part, const std::string& first,
+                                 const std::string& problem) {
+    throw Error(
+        ExitCode::kMismatch,
+        fmt::format("'{}' cannot be joined to '{}': {}; render one of them again with the settings of "
+                    "the other",
+                    part, first, problem));
+}
+
 /// A chunk file, open for reading its packets.
 class ChunkInput {
   public:
@@ -46,6 +58,7 @@ class ChunkInput {
         format_.reset(format);
         const int index = av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
         if (index < 0) fail_damaged(file, "it has no video track");
+        if (format->nb_streams > 1) fail_damaged(file, "it has other tracks, which would be lost");
         stream_ = format->streams[index];
         const AVCodecParameters& its = parameters();
         if (!is_picture_size(its.width, its.height))
@@ -117,8 +130,11 @@ std::vector<FrameColors> for_each_chunk(const Chunks& chunks, const ChunkInput& 
     std::int64_t frames = 0;
     for (std::size_t i = 0; i < chunks.count; ++i) {
         ChunkInput chunk = chunks.open(i);
-        if (!are_of_one_video(first.parameters(), chunk.parameters()))
-            fail_damaged(chunk.file(), "it is of another video than the chunks before it");
+        if (!are_of_one_video(first.parameters(), chunk.parameters()) ||
+            first.has_alpha() != chunk.has_alpha())
+            fail_differing(chunk.file().path, first.file().path,
+                           "it is of another video than the chunks before it, or was encoded with other "
+                           "settings (--preset, --crf)");
         for (FrameColors& frame : chunk.colors(frames))
             if (colors.empty() || frame.frame > colors.back().frame) colors.push_back(std::move(frame));
         work(chunk, frames);
@@ -157,9 +173,37 @@ void check_ending(const Ending& ending, AVCodecID codec, const std::string& path
     const std::string_view stream = avcodec_get_name(codec);
     for (const char* const name : ending.codecs)
         if (is_file && name != nullptr && find_codec(name)->stream == stream) return;
-    throw Error(ExitCode::kUsage, fmt::format("the chunks hold {}, which '{}' cannot be made of; give the "
-                                              "ending that the render was for",
-                                              stream, path));
+    throw Error(
+        ExitCode::kUsage,
+        fmt::format("'{}' cannot be made of {}; give the ending that the render was for", path, stream));
+}
+
+/// Verifies the parts, and refuses those that differ from the first in what the report says. Returns the
+/// rate.
+Rational check_parts(const std::vector<std::string>& parts, ChunkRun& run) {
+    using Traits = std::array<std::pair<const char*, std::string>, 4>;
+    std::optional<Traits> first;
+    Rational fps;
+    for (const std::string& part : parts) {
+        const VerifyReport its = verify_in_child(part);
+        if (!its.ok())
+            throw Error(ExitCode::kMismatch,
+                        fmt::format("'{}' fails its check: {}", part, its.problems.front()));
+        fps = its.fps;
+        const Traits traits{{{"size (--size)", fmt::format("{}x{}", its.width_px, its.height_px)},
+                             {"rate (--fps)", fps.text()},
+                             {"codec (--codec, --pix)", fmt::format("{} {}", its.coding(), its.pixel_format)},
+                             {"colour", fmt::format("{} {} {} {} {}", its.range, its.matrix, its.primaries,
+                                                    its.transfer, its.chroma_location)}}};
+        if (!first) first = traits;
+        for (std::size_t i = 0; i < traits.size(); ++i)
+            if (const auto& [name, value] = traits[i]; value != (*first)[i].second)
+                fail_differing(part, parts.front(),
+                               fmt::format("its {} is {} and not {}", name, value, (*first)[i].second));
+        run.chunks.push_back({std::ssize(run.chunks), its.frames, 0, part});
+        run.frames += its.frames;
+    }
+    return fps;
 }
 
 /// Checks of an animation, which has no comment that tells count and rate.
@@ -268,6 +312,26 @@ Recovered recover(const std::string& folder, const std::string& path, const Outp
     const bool removes = run.left_out == 0 && !keeps_folder;
     if (removes) parts.remove();
     return {run.frames, run.gap ? gap_text(run, *manifest) : "", run.is_damaged, run.left_out, removes};
+}
+
+ChunkRun join_videos(const std::vector<std::string>& parts, const std::string& path, const std::string& title,
+                     const std::string& comment, const OutputOptions& options) {
+    if (find_ending(path).kind != FileKind::kVideo)
+        throw Error(ExitCode::kUsage,
+                    fmt::format("'{}' is no video that can be joined; give a name that ends as the parts do "
+                                "(.mp4, .mov, .mkv, .webm)",
+                                path));
+    ChunkRun run;
+    const Rational fps = check_parts(parts, run);
+    nlohmann::json told = nlohmann::json::parse(comment);
+    told["fps"] = fps.text();
+    std::optional<std::int64_t> crf;  // the worst, by which verify() judges colours
+    for (const std::string& part : parts) crf = std::max(crf, comment_number(comment_in_child(part), "crf"));
+    if (crf) told["crf"] = *crf;
+    const Manifest manifest{.fps = fps, .title = title, .comment = told.dump()};
+    work_in_child(fmt::format("{}", fmt::join(parts, "', '")), bytes_of(run.chunks),
+                  [&] { join_chunks(run, manifest, path, options, {.depth = VerifyDepth::kKeyFrames}); });
+    return run;
 }
 
 }  // namespace corda::media
