@@ -9,7 +9,7 @@ namespace {
 /// cells.
 int share_px(int k, int count, int side_px) {
     const auto edge_px = [&](std::int64_t cell) {
-        return cell == count ? side_px : static_cast<int>(side_px * cell / (2 * count)) * 2;
+        return cell == count ? side_px : static_cast<int>(side_px * cell / 2 / count) * 2;
     };
     return edge_px(k + 1) - edge_px(k);
 }
@@ -90,7 +90,7 @@ Damage PanelRenderer::draw(std::int64_t k) {
     int x = 0;
     int y = 0;
     for (std::size_t i = 0; i < renderers_.size(); ++i) {
-        const Damage damage = renderers_[i].draw(Panels::shown_s(panels_->films[i], k));
+        Damage damage = renderers_[i].draw(Panels::shown_s(panels_->films[i], k));
         if (renderers_.size() == 1) return damage;
         const Image& panel = renderers_[i].image();
         for (const PixelRect& given : damage) {
