@@ -1,5 +1,6 @@
 #include "corda/core/direction.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -67,6 +68,19 @@ Direction direction_of(double angle_deg) {
         default:
             return rest;
     }
+}
+
+double angle_rad(double y, double x) {
+    const double large = std::max(std::abs(x), std::abs(y));
+    if (large == 0.0) return 0.0;
+    double tangent = std::min(std::abs(x), std::abs(y)) / large;
+    for (int halved = 0; halved < 2; ++halved) tangent /= 1.0 + std::sqrt(1.0 + tangent * tangent);
+    double sum = 0.0;
+    for (int n = 25; n >= 1; n -= 2) sum = 1.0 / n - tangent * tangent * sum;
+    double angle = 4.0 * tangent * sum;
+    if (std::abs(y) > std::abs(x)) angle = 0.5 * std::numbers::pi - angle;
+    if (x < 0.0) angle = std::numbers::pi - angle;
+    return y < 0.0 ? -angle : angle;
 }
 
 }  // namespace corda

@@ -14,4 +14,8 @@ struct Direction {
 /// a CPU without FMA.
 [[nodiscard]] Direction direction_of(double angle_deg);
 
+/// The angle of (x, y) from +x in radians, -pi .. pi, to within 4e-16 of a turn; 0 for (0, 0). Like
+/// std::atan2, but computed from +, -, *, / and square roots alone, for the same reason.
+[[nodiscard]] double angle_rad(double y, double x);
+
 }  // namespace corda

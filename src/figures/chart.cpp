@@ -13,8 +13,7 @@ namespace corda::figures {
 namespace {
 
 view::NumberTitle title_of_axis(const AxisDef& axis, double size) {
-    const bool is_plain = axis.unit == "s" || axis.unit == "rad" || axis.unit == "rad/s" || axis.unit == "°";
-    if (is_plain) return {fmt::format("{} ({})", axis.text, axis.unit), 1.0};
+    if (axis.unit == "s") return {axis.text + " (s)", 1.0};
     return view::title_of(axis.text, axis.unit, size);
 }
 

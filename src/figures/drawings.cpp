@@ -95,7 +95,7 @@ Scene look_in_print(const Scene& scene, double width_mm) {
          {&style.rope_width_px, &style.net_width_px, &style.marker_radius_px, &style.bar_width_px})
         scale(*width_px, factor);
     for (BodyStyleDef& body : look.body_styles) scale(body.width_px, factor);
-    look.overlay.plot = LivePlot::kNone;
+    look.overlay.plots.clear();
     look.overlay.text_px = kLetterPt / kPointsPerInch * report::kPrintPpi;
     return look;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 #include <fmt/format.h>
@@ -118,23 +117,13 @@ class Reader {
         }
     }
 
-    /// Between two states a fast one may turn by more than half a turn, so the turns are counted by the rate.
     static void add_turning(const State& state, BodyCurves& body) {
-        constexpr double kTurn = 2.0 * std::numbers::pi;
         const std::size_t i = body.followed.particle;
         const std::size_t pin = body.followed.pin.value();
-        const double dx_m = state.x_m[i] - state.x_m[pin];
-        const double dy_m = state.y_m[i] - state.y_m[pin];
-        const double square_m2 = dx_m * dx_m + dy_m * dy_m;
-        const double rate = (dx_m * state.vy_m_s[i] - dy_m * state.vx_m_s[i]) / square_m2;
-        double angle = std::atan2(dx_m, -dy_m);
-        if (!body.turning.empty()) {
-            const view::CurvePoint& last = body.turning.back();
-            const double expected = last.x + 0.5 * (last.y + rate) * (state.time_s - last.time_s);
-            if (std::isfinite(expected)) angle += kTurn * std::round((expected - angle) / kTurn);
-        }
-        body.nearest_m = std::min(body.nearest_m, std::sqrt(square_m2));
-        body.turning.push_back({state.time_s, angle, rate});
+        body.nearest_m = std::min(body.nearest_m,
+                                  sim::length(state.x_m[i] - state.x_m[pin], state.y_m[i] - state.y_m[pin]));
+        const view::CurvePoint* const last = body.turning.empty() ? nullptr : &body.turning.back();
+        body.turning.push_back(pipeline::turning_of(body.followed, state, last));
     }
 
     void add_energy(const State& state) {

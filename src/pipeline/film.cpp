@@ -13,6 +13,7 @@
 #include "corda/pipeline/motion_input.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/sim/auto/planner.hpp"
+#include "corda/sim/forces/forces.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/camera.hpp"
 #include "corda/view/number_text.hpp"
@@ -57,9 +58,10 @@ struct Film::Impl {
 
     pipeline::Motion& start_motion() const {
         const CancelScope starting = reporting_start();
-        return run->motion.emplace(system, scene.world, pipeline::if_all_named(run->named), timeline(),
-                                   def.motion_budget_bytes, quantity_of(scene.style.color_by),
-                                   def.readings.with(plot_data.readings()));
+        return run->motion.emplace(
+            system, scene.world, pipeline::if_all_named(run->named), timeline(), def.motion_budget_bytes,
+            quantity_of(scene.style.color_by),
+            def.readings.with(plot_data.readings()).with({.velocities = scene.overlay.energy}));
     }
 
     /// Required while the motion is read.
@@ -101,8 +103,8 @@ struct Film::Impl {
     const CameraDef& find_camera_locked() {
         if (camera) return *camera;
         if (drawing.renderer.needs_motion()) motion.run_to_end();
-        if (scene.overlay.plot != LivePlot::kNone) {
-            plot = plot_data.read(
+        if (!scene.overlay.plots.empty()) {
+            plots = plot_data.read(
                 motion.methods(), last_s_locked(),
                 [this](double time_s) -> const State& { return motion.at(time_s); },
                 [this](const State& state) { return motion.energy_of(state); });
@@ -127,7 +129,7 @@ struct Film::Impl {
 
     /// Fits a renderer to the motion.
     CameraDef fit_locked(pipeline::SceneRenderer& renderer) const {
-        if (plot) renderer.set_plot(*plot);
+        if (!plots.empty()) renderer.set_plots(plots);
         // The start exists even if the first step diverges.
         const sim::Recording& recording = motion.recording();
         return renderer.fit(recording.size() > 0 ? recording.particle_bounds() : bounds_of_start(system),
@@ -168,6 +170,8 @@ struct Film::Impl {
         by.trails.read(motion, time_s);
         by.state = motion.at(time_s);
         by.figures = motion.figures();
+        by.energy.reset();
+        if (scene.overlay.energy && !by.figures.energy_error) by.energy = motion.energy_of(by.state);
         return by.state;
     }
 
@@ -209,7 +213,8 @@ struct Film::Impl {
     view::Caption caption_of(const DrawContext& by, const view::Camera& map) const {
         std::optional<double> bound_px;
         if (plan.error_bound_m) bound_px = *plan.error_bound_m * map.pixels_per_metre();
-        view::Caption caption{by.state.time_s, by.figures.energy_error, method_caption(plan, bound_px), {}};
+        view::Caption caption{by.state.time_s, by.figures.energy_error, method_caption(plan, bound_px), {},
+                              by.energy,       energy_scale_j};
         by.renderer.locate_labels(by.state, map, caption);
         return caption;
     }
@@ -304,7 +309,8 @@ struct Film::Impl {
     pipeline::LivePlotData plot_data;
     pipeline::Motion& motion;
     Plan& plan;
-    std::optional<view::PlotData> plot;
+    double energy_scale_j = sim::energy_scale_j(system, sim::Forces(scene.world).on_particles(system));
+    std::vector<view::PlotData> plots;
     std::optional<CameraDef> camera;
     std::optional<view::CameraTrack> track;  ///< of a camera that moves
     State asked;                             ///< returned last by at()
@@ -470,7 +476,7 @@ pipeline::SharedMotion& FilmRenderer::motion_of(Film& film) {
 }
 
 Film FilmRenderer::another_look(const Film& film, const Scene& look) {
-    if (look.overlay.plot != LivePlot::kNone || look.style.color_by != film.scene().style.color_by)
+    if (!look.overlay.plots.empty() || look.style.color_by != film.scene().style.color_by)
         throw Error(ExitCode::kInternal, "another look of a film needs what its motion does not have");
     return Film(std::make_unique<Film::Impl>(*film.impl_, look));
 }

@@ -22,7 +22,8 @@ struct DrawContext {
     SceneRenderer renderer;
     TrailRecorder trails;
     State state;
-    Figures figures;  ///< of the state
+    Figures figures;               ///< of the state
+    std::optional<Energy> energy;  ///< of the state, if it is shown in place of the energy error
 };
 
 }  // namespace pipeline

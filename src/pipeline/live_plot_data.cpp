@@ -2,50 +2,176 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <string>
 #include <variant>
 
 #include "corda/core/timeline.hpp"
-#include "corda/pipeline/plan_text.hpp"
 #include "corda/pipeline/tracked_particle.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/system.hpp"
-#include "corda/view/scene_view.hpp"
 
 namespace corda::pipeline {
 namespace {
+
+using view::CurvePoint;
+using view::PlotData;
 
 /// Maximum number of samples: a longer motion is read at a stride.
 constexpr std::size_t kMaxSamples = 100'000;
 /// Number of samples of a short motion: a few per pixel of a wide plot.
 constexpr std::size_t kFinestSamples = 4000;
-/// Maximum memory of the states that are recorded only for the plot.
+/// Maximum memory of the states that are recorded only for the plots.
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 /// Motion below this share of the scene's initial size, and of that per duration, is drawn as rest.
 constexpr double kStill = 1e-3;
+/// Maximum number of bodies with a curve each.
+constexpr std::size_t kMaxCurves = 16;
 
-std::size_t body_of(const System& system, std::size_t particle) {
-    std::size_t body = 0;
-    while (body + 1 < system.bodies.size() && system.bodies[body + 1].first_particle <= particle) ++body;
-    return body;
+/// What the plots show of a scene.
+struct Subject {
+    Subject(const Scene& scene, const System& of) : system(of), end_s(scene.world.duration_s) {
+        MotionBounds start;
+        for (std::size_t i = 0; i < of.particle_count(); ++i) start.include(of.x_m[i], of.y_m[i]);
+        const Vec2 extent_m = start.max_m() - start.min_m();
+        size_m = sim::length(extent_m.x, extent_m.y);
+        mass_kg = std::accumulate(of.mass_kg.begin(), of.mass_kg.end(), 0.0);
+        turning = tracked_particles(of, of.bodies.size());
+        tips.assign(2, tip_of(of));
+        for (const TrackedParticle& tracked : turning)
+            if (tracked.body < tips.size()) tips[tracked.body] = tracked.particle;
+        std::erase_if(turning, [](const TrackedParticle& one) { return !one.pin || !one.is_free_end; });
+        turning.resize(std::min(turning.size(), kMaxCurves));
+    }
+
+    /// Curves of bodies, with names if the scene has others.
+    [[nodiscard]] std::vector<PlotData::Curve> curves() const {
+        std::vector<PlotData::Curve> curves;
+        for (const TrackedParticle& one : turning)
+            curves.push_back(
+                {.name = system.bodies.size() > 1 ? body_name(system, one.body) : "", .body = one.body});
+        return curves;
+    }
+
+    const System& system;
+    double end_s;
+    double size_m = 0.0;
+    double mass_kg = 0.0;
+    std::vector<TrackedParticle> turning;  ///< free ends of bodies with one pin
+    std::vector<std::size_t> tips;         ///< of ropes 0 and 1
+};
+
+/// A state, and what several plots show of it.
+struct Sample {
+    const State& state;
+    Energy energy;
+    std::vector<CurvePoint> turns;  ///< see turning_of(); one per particle of Subject::turning
+};
+
+/// One kind of plot: its axes and empty curves, and the values that a sample adds to the curves: the y of
+/// each over time, otherwise x and y.
+struct Kind {
+    bool needs_velocities;
+    PlotData (*axes)(const Subject& subject);
+    std::vector<CurvePoint> (*values)(const Subject& subject, const Sample& sample);
+};
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+const PlotData::AxisName kTime{"t", "s"};
+
+/// In the order of LivePlot.
+const Kind kKinds[] = {
+    {true,
+     [](const Subject& subject) -> PlotData {
+         using Hue = PlotData::Hue;
+         const double speed_m_s = subject.size_m / subject.end_s;
+         return {kTime,
+                 {"energy", "J", kStill * subject.mass_kg * speed_m_s * speed_m_s},
+                 subject.end_s,
+                 {{"kinetic", Hue::kKinetic}, {"potential", Hue::kPotential}, {"total", Hue::kText}}};
+     },
+     [](const Subject&, const Sample& sample) -> std::vector<CurvePoint> {
+         const double potential_j = sample.energy.potential_j();
+         return {{.y = sample.energy.kinetic_j},
+                 {.y = potential_j},
+                 {.y = sample.energy.kinetic_j + potential_j}};
+     }},
+    {true,
+     [](const Subject& subject) -> PlotData {
+         return {kTime, {"angle", "°", kStill, "φ"}, subject.end_s, subject.curves()};
+     },
+     [](const Subject&, const Sample& sample) {
+         std::vector<CurvePoint> values;
+         for (const CurvePoint& turn : sample.turns) values.push_back({.y = kDegrees * turn.x});
+         return values;
+     }},
+    {true,
+     [](const Subject& subject) -> PlotData {
+         const double least = kStill / kDegrees;
+         return {{"angle", "rad", least, "φ"},
+                 {"angular velocity", "rad/s", least / subject.end_s, "ω"},
+                 0.0,
+                 subject.curves()};
+     },
+     [](const Subject&, const Sample& sample) { return sample.turns; }},
+    {false,
+     [](const Subject& subject) -> PlotData {
+         const std::string name = body_name(subject.system, 0) + " – " + body_name(subject.system, 1);
+         return {kTime,
+                 {"distance of the tips", "m", 0.0, "distance", true},
+                 subject.end_s,
+                 {{subject.system.bodies.size() > 2 ? name : ""}}};
+     },
+     [](const Subject& subject, const Sample& sample) -> std::vector<CurvePoint> {
+         const State& state = sample.state;
+         const std::size_t a = subject.tips[0];
+         const std::size_t b = subject.tips[1];
+         return {{.y = sim::length(state.x_m[a] - state.x_m[b], state.y_m[a] - state.y_m[b])}};
+     }},
+    {false,
+     [](const Subject& subject) -> PlotData {
+         const std::size_t tip = tip_of(subject.system);
+         const std::string name = subject.system.bodies.size() > 1
+                                      ? " of " + body_name(subject.system, body_of(subject.system, tip))
+                                      : "";
+         return {kTime,
+                 {"position", "m", kStill * subject.size_m},
+                 subject.end_s,
+                 {{"x" + name, PlotData::Hue::kX}, {"y", PlotData::Hue::kY}}};
+     },
+     [](const Subject& subject, const Sample& sample) -> std::vector<CurvePoint> {
+         const std::size_t tip = tip_of(subject.system);
+         return {{.y = subject.system.origin_m.x + sample.state.x_m[tip]},
+                 {.y = subject.system.origin_m.y + sample.state.y_m[tip]}};
+     }},
+};
+
+const Kind& kind_of(LivePlot plot) {
+    return kKinds[static_cast<std::size_t>(plot)];
+}
+
+/// A logarithm takes no 0: equal positions are drawn as the smallest distance.
+void raise_zeros(double size_m, PlotData& data) {
+    constexpr double kRounding = 1e-16;
+    for (PlotData::Curve& curve : data.curves) {
+        double least = HUGE_VAL;
+        for (const CurvePoint& point : curve.points)
+            if (point.y > 0.0) least = std::min(least, point.y);
+        if (least == HUGE_VAL) least = kRounding * size_m;
+        for (CurvePoint& point : curve.points) point.y = std::max(point.y, least);
+    }
 }
 
 }  // namespace
 
-LivePlotData::LivePlotData(const Scene& scene, const System& system)
-    : scene_(&scene),
-      system_(&system),
-      plot_(scene.overlay.plot),
-      tip_(tip_of(system)),
-      body_(body_of(system, tip_)) {}
-
 StateFields LivePlotData::readings() const {
-    return {.velocities = plot_ == LivePlot::kEnergy || plot_ == LivePlot::kPhase};
+    return {.velocities = std::any_of(scene_->overlay.plots.begin(), scene_->overlay.plots.end(),
+                                      [](LivePlot plot) { return kind_of(plot).needs_velocities; })};
 }
 
 std::vector<double> LivePlotData::times_s() const {
-    if (plot_ == LivePlot::kNone) return {};
+    if (scene_->overlay.plots.empty()) return {};
     constexpr std::size_t kNumbersPerParticle = 4;
     const std::size_t state_bytes = kNumbersPerParticle * sizeof(double) * system_->particle_count();
     const std::size_t count = std::min(kFinestSamples, kMaxBytes / state_bytes);
@@ -55,84 +181,43 @@ std::vector<double> LivePlotData::times_s() const {
     return times_s;
 }
 
-view::PlotData LivePlotData::axes() const {
-    using Curve = view::PlotData::Curve;
-    MotionBounds start;
-    for (std::size_t i = 0; i < system_->particle_count(); ++i)
-        start.include(system_->x_m[i], system_->y_m[i]);
-    const Vec2 extent_m = start.max_m() - start.min_m();
-    const double size_m = sim::length(extent_m.x, extent_m.y);
-    const double end_s = scene_->world.duration_s;
-    const double speed_m_s = size_m / end_s;
-    const double mass_kg = std::accumulate(system_->mass_kg.begin(), system_->mass_kg.end(), 0.0);
-    const view::PlotData::AxisName time{"t", "s"};
-    const std::string of_body = system_->bodies.size() > 1 ? " of " + body_name(*system_, body_) : "";
-    switch (plot_) {
-        case LivePlot::kEnergy:
-            return {time,
-                    {"energy", "J", kStill * mass_kg * speed_m_s * speed_m_s},
-                    end_s,
-                    {Curve{"kinetic"}, Curve{"potential"}, Curve{"total"}}};
-        case LivePlot::kTip:
-            return {
-                time, {"position", "m", kStill * size_m}, end_s, {Curve{"x" + of_body}, Curve{"y"}}, body_};
-        case LivePlot::kPhase:
-            return {{"x" + of_body, "m", kStill * size_m},
-                    {"vx", "m/s", kStill * speed_m_s},
-                    0.0,
-                    {Curve{}},
-                    body_};
-        case LivePlot::kNone:
-            break;
-    }
-    return {};
-}
-
-view::PlotData LivePlotData::read(const std::vector<MethodDef>& methods, double end_s,
-                                  const std::function<const State&(double time_s)>& state_at,
-                                  const std::function<Energy(const State&)>& energy_of) const {
-    view::PlotData data = axes();
+std::vector<PlotData> LivePlotData::read(const std::vector<MethodDef>& methods, double end_s,
+                                         const std::function<const State&(double time_s)>& state_at,
+                                         const std::function<Energy(const State&)>& energy_of) const {
+    const Subject subject(*scene_, *system_);
+    const std::vector<LivePlot>& plots = scene_->overlay.plots;
+    std::vector<PlotData> all;
+    for (const LivePlot plot : plots) all.push_back(kind_of(plot).axes(subject));
     const FrameRate fps = scene_->video.scene_rate();
     const Timeline timeline(fps, fps.last_frame_within(scene_->world.duration_s), times_s());
     const std::size_t stride = timeline.size() / kMaxSamples + 1;
-    for (std::size_t i = 0; i < timeline.size() && timeline.time_s(i) <= end_s; i += stride)
-        add(state_at(timeline.time_s(i)), energy_of, data);
-    if (plot_ != LivePlot::kEnergy) return data;
-    const auto lower = [](const view::CurvePoint& a, const view::CurvePoint& b) { return a.y < b.y; };
-    auto& potential = data.curves[1].points;
-    const double least_j = std::min_element(potential.begin(), potential.end(), lower)->y;
-    for (const std::size_t curve : {1, 2})
-        for (view::CurvePoint& point : data.curves[curve].points) point.y -= least_j;
+    std::vector<CurvePoint> turns;
+    for (std::size_t i = 0; i < timeline.size() && timeline.time_s(i) <= end_s; i += stride) {
+        const State& state = state_at(timeline.time_s(i));
+        Sample sample{state, {}, {}};
+        if (readings().velocities) {
+            sample.energy = energy_of(state);
+            for (std::size_t k = 0; k < subject.turning.size(); ++k)
+                sample.turns.push_back(
+                    turning_of(subject.turning[k], state, turns.empty() ? nullptr : &turns[k]));
+            turns = sample.turns;
+        }
+        for (std::size_t p = 0; p < plots.size(); ++p) {
+            const std::vector<CurvePoint> values = kind_of(plots[p]).values(subject, sample);
+            for (std::size_t k = 0; k < values.size(); ++k)
+                all[p].curves[k].points.push_back(
+                    {state.time_s, all[p].end_s > 0.0 ? state.time_s : values[k].x, values[k].y});
+        }
+    }
     const auto is_relaxation = [](const MethodDef& method) {
         return std::holds_alternative<RelaxationDef>(method);
     };
-    if (std::any_of(methods.begin(), methods.end(), is_relaxation)) data.curves.pop_back();
-    return data;
-}
-
-void LivePlotData::add(const State& state, const std::function<Energy(const State&)>& energy_of,
-                       view::PlotData& data) const {
-    const double t = state.time_s;
-    const double x_m = system_->origin_m.x + state.x_m[tip_];
-    switch (plot_) {
-        case LivePlot::kEnergy: {
-            const Energy energy = energy_of(state);
-            const double potential_j = energy.potential_j();
-            data.curves[0].points.push_back({t, t, energy.kinetic_j});
-            data.curves[1].points.push_back({t, t, potential_j});
-            data.curves[2].points.push_back({t, t, energy.kinetic_j + potential_j});
-            break;
-        }
-        case LivePlot::kTip:
-            data.curves[0].points.push_back({t, t, x_m});
-            data.curves[1].points.push_back({t, t, system_->origin_m.y + state.y_m[tip_]});
-            break;
-        case LivePlot::kPhase:
-            data.curves[0].points.push_back({t, x_m, state.vx_m_s[tip_]});
-            break;
-        case LivePlot::kNone:
-            break;
+    for (std::size_t p = 0; p < plots.size(); ++p) {
+        if (plots[p] == LivePlot::kEnergy && std::any_of(methods.begin(), methods.end(), is_relaxation))
+            all[p].curves.pop_back();
+        if (all[p].y.is_log) raise_zeros(subject.size_m, all[p]);
     }
+    return all;
 }
 
 }  // namespace corda::pipeline

@@ -78,8 +78,7 @@ SceneRenderer::SceneRenderer(const Scene& scene, const System& system, const std
 }
 
 bool SceneRenderer::needs_motion() const {
-    return view::needs_motion(scene_->camera) || view_.needs_motion() ||
-           scene_->overlay.plot != LivePlot::kNone;
+    return view::needs_motion(scene_->camera) || view_.needs_motion() || !scene_->overlay.plots.empty();
 }
 
 CameraDef SceneRenderer::fit(std::span<const MotionBounds> motion, const sim::Histogram& histogram) {
@@ -267,10 +266,10 @@ struct Renderer::Impl {
                         "style: color_by is a quantity of a motion, and a Renderer draws positions alone; "
                         "choose kBody or kLink");
         }
-        if (scene.overlay.plot != LivePlot::kNone) {
+        if (!scene.overlay.plots.empty()) {
             throw Error(
                 ExitCode::kInvalidScene,
-                "overlay: plot shows a whole motion, and a Renderer draws positions alone; leave it out");
+                "overlay: plots show a whole motion, and a Renderer draws positions alone; leave them out");
         }
         camera = renderer.fit(bounds_of_start(system));
     }

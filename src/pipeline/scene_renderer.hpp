@@ -21,7 +21,7 @@ namespace corda::pipeline {
 /// Traces of the motion up to a state.
 struct Traces {
     std::span<const view::Trail> trails;  ///< one per particle traced(), or none
-    double plotted_s = 0.0;               ///< end of the curves of the live plot
+    double plotted_s = 0.0;               ///< end of the curves of the live plots
 };
 
 /// An open OpenGL context and its frame renderer. The context dies last.
@@ -61,8 +61,8 @@ class SceneRenderer {
     [[nodiscard]] view::CameraTrack track(double end_s,
                                           const std::function<const State&(double time_s)>& state_at,
                                           CameraDef& camera) const;
-    /// Sets the data of the live plot.
-    void set_plot(const view::PlotData& data) { overlay_.set_plot(data, view_.body_colors()); }
+    /// Sets the data of the live plots.
+    void set_plots(std::span<const view::PlotData> data) { overlay_.set_plots(data, view_.body_colors()); }
     /// Lower bound on the scale of the camera that fit() returns for a motion within `bounds`.
     [[nodiscard]] double largest_pixels_per_metre(const MotionBounds& bounds) const;
     /// The map to pixels of a camera with center and height.
@@ -110,7 +110,7 @@ class SceneRenderer {
     void locate_labels(const State& state, const view::Camera& map, view::Caption& caption) const {
         view::locate(overlay_.labels(), state, map, caption);
     }
-    /// Adds the overlay to a list, without the curves of the plot.
+    /// Adds the overlay to a list, without the curves of the plots.
     void annotate(const view::Caption& caption, const view::Camera& map, view::DrawList& list) {
         overlay_.draw(caption, map.pixels_per_metre(), list);
     }

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "corda/core/direction.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/view/scene_view.hpp"
 
@@ -38,10 +40,10 @@ std::size_t most_central(const System& system, const std::vector<std::size_t>& p
 
 }  // namespace
 
-std::vector<TrackedParticle> tracked_particles(const System& system) {
+std::vector<TrackedParticle> tracked_particles(const System& system, std::size_t most) {
     const std::vector<std::size_t> ends = view::free_ends(system);
     std::vector<TrackedParticle> all;
-    for (std::size_t b = 0; b < system.bodies.size() && all.size() < kMaxBodies; ++b) {
+    for (std::size_t b = 0; b < system.bodies.size() && all.size() < most; ++b) {
         const Body& body = system.bodies[b];
         const std::vector<std::size_t> free = particles_of(system, body, false);
         if (free.empty()) continue;
@@ -60,11 +62,34 @@ std::vector<TrackedParticle> tracked_particles(const System& system) {
     return all;
 }
 
+view::CurvePoint turning_of(const TrackedParticle& tracked, const State& state,
+                            const view::CurvePoint* last) {
+    constexpr double kTurn = 2.0 * std::numbers::pi;
+    const std::size_t i = tracked.particle;
+    const std::size_t pin = tracked.pin.value_or(i);
+    const double dx_m = state.x_m[i] - state.x_m[pin];
+    const double dy_m = state.y_m[i] - state.y_m[pin];
+    const double rate = (dx_m * state.vy_m_s[i] - dy_m * state.vx_m_s[i]) / (dx_m * dx_m + dy_m * dy_m);
+    double angle = angle_rad(dx_m, -dy_m);
+    if (last != nullptr) {
+        const double expected = last->x + 0.5 * (last->y + rate) * (state.time_s - last->time_s);
+        if (std::isfinite(expected)) angle += kTurn * std::round((expected - angle) / kTurn);
+    }
+    return {state.time_s, angle, rate};
+}
+
 std::size_t tip_of(const System& system) {
     const std::vector<std::size_t> ends = view::free_ends(system);
     if (!ends.empty()) return ends.front();
     const std::vector<TrackedParticle> tracked = tracked_particles(system);
     return tracked.empty() ? 0 : tracked.front().particle;
+}
+
+std::size_t body_of(const System& system, std::size_t particle) {
+    const auto after =
+        std::partition_point(system.bodies.begin(), system.bodies.end(),
+                             [particle](const Body& body) { return body.first_particle <= particle; });
+    return static_cast<std::size_t>(after - system.bodies.begin()) - 1;
 }
 
 std::size_t moving_count(const System& system) {

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "corda/sim/simulation.hpp"
 #include "corda/sim/system.hpp"
+#include "corda/view/plot_panel.hpp"
 
 namespace corda::pipeline {
 
@@ -22,11 +24,21 @@ struct TrackedParticle {
     std::optional<std::size_t> pin = {};  ///< the only pinned particle of the body, of the system
 };
 
-/// The tracked particles of the first kMaxBodies bodies that have free particles.
-[[nodiscard]] std::vector<TrackedParticle> tracked_particles(const System& system);
+/// The tracked particles of the first `most` bodies that have free particles.
+[[nodiscard]] std::vector<TrackedParticle> tracked_particles(const System& system,
+                                                             std::size_t most = kMaxBodies);
+
+/// Angle of the way from the pin of a tracked particle, which must have one, in rad from straight down,
+/// positive towards +x, and its rate in rad/s, as x and y. Turns are counted on from the point of an earlier
+/// state, if there is one, by the rate: between two states, a fast rope may turn by more than half a turn.
+[[nodiscard]] view::CurvePoint turning_of(const TrackedParticle& tracked, const State& state,
+                                          const view::CurvePoint* last);
 
 /// The first free end of a rope; without one, the first tracked particle.
 [[nodiscard]] std::size_t tip_of(const System& system);
+
+/// The body of a particle.
+[[nodiscard]] std::size_t body_of(const System& system, std::size_t particle);
 
 /// Number of bodies with free particles.
 [[nodiscard]] std::size_t moving_count(const System& system);

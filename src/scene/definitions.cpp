@@ -1,6 +1,8 @@
 // Checks of definitions as a whole: the schema checks each value.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "corda/core/image.hpp"
 #include "corda/scene/readers.hpp"
 
@@ -29,6 +31,25 @@ std::vector<DefProblem> problems_of(const OverlayTextDef& text) {
         {"to",
          {},
          fmt::format("{} s is not after {} s, when it appears; give a later time", *text.to_s, text.from_s)}};
+}
+
+std::vector<DefProblem> problems_of(const OverlayDef& overlay, const std::vector<RopeDef>& ropes) {
+    const auto has_one_pin = [](const RopeDef& rope) { return rope.pinned.size() == 1 && !rope.closed; };
+    const bool has_angle = std::any_of(ropes.begin(), ropes.end(), has_one_pin);
+    const std::vector<LivePlot>& plots = overlay.plots;
+    std::vector<DefProblem> problems;
+    for (std::size_t i = 0; i < plots.size(); ++i) {
+        const auto add = [&](const char* problem) { problems.push_back({"plots", i, problem}); };
+        const auto now = plots.begin() + static_cast<std::ptrdiff_t>(i);
+        if (std::find(plots.begin(), now, *now) != now) add("the same plot twice; remove one");
+        if ((*now == LivePlot::kAngle || *now == LivePlot::kPhase) && !has_angle)
+            add("no rope has one pinned particle, to measure the angle about, and a free end; pin one "
+                "particle of an open rope, or remove this plot");
+        if (*now == LivePlot::kDivergence && ropes.size() < 2)
+            add("it is the distance of the tips of ropes 0 and 1, and there are not two ropes; give "
+                "another [[rope]] or rope.copies, or remove this plot");
+    }
+    return problems;
 }
 
 std::vector<DefProblem> problems_of(const CameraDef& camera, std::size_t bodies) {

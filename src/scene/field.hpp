@@ -70,7 +70,12 @@ template <class T>
 }
 template <class T>
 [[nodiscard]] std::string toml_of(const Key& key, const std::vector<T>& values) {
-    return values.empty() && !key.binding.initial.words.empty() ? "" : toml_text(values);
+    if constexpr (std::is_enum_v<T>) {
+        std::string text;
+        for (const T& value : values) text += (text.empty() ? "" : ", ") + toml_of(key, value);
+        return "[" + text + "]";
+    } else
+        return values.empty() && !key.binding.initial.words.empty() ? "" : toml_text(values);
 }
 
 /// Stores a checked value in a member.
@@ -80,6 +85,9 @@ void read_value(const Key& key, const Value& value, T& target) {
         std::size_t index = 0;
         while (key.type.choices[index] != value.as<std::string_view>()) ++index;
         target = static_cast<T>(index);
+    } else if constexpr (kIsVector<T>) {
+        target.resize(value.size());
+        for (std::size_t i = 0; i < target.size(); ++i) read_value(key, value.at(i), target[i]);
     } else {
         target = value.as<T>();
     }

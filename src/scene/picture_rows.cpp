@@ -128,6 +128,12 @@ std::vector<Key> style_keys() {
     };
 }
 
+Type live_plots() {
+    Type type = list(Kind::kChoice, 0);
+    type.choices = {"energy", "angle", "phase", "divergence", "tip"};
+    return type;
+}
+
 std::vector<Key> overlay_keys() {
     const Type boolean = of(Kind::kBoolean);
     const auto if_large = [](std::optional<bool> OverlayDef::*member) {
@@ -145,9 +151,10 @@ std::vector<Key> overlay_keys() {
          "the error of the energy, next to the time", "left out if there is no room"},
         {"overlay", "method", boolean, "", field(&OverlayDef::method),
          "the method and the bound of the displayed error, below the title"},
-        {"overlay", "plot", one_of({"none", "energy", "tip", "phase"}), "", field(&OverlayDef::plot),
-         "a live plot next to the picture",
-         "kinetic, potential and total energy; x and y of the first free end; its vx against x"},
+        {"overlay", "plots", live_plots(), "", field(&OverlayDef::plots), "live plots next to the picture",
+         "over time: energies, angle of each rope, distance of the tips of ropes 0 and 1, x and y of the "
+         "first "
+         "tip; phase: angular velocity against angle"},
         {"overlay", "texts", of(Kind::kTables), "", none(),
          "texts = [{ text = \"released\", at = [0.5, 0.1], from = 0.0, to = 1.5 }]",
          "texts in the picture, for a time each"},

@@ -97,6 +97,9 @@ struct DefProblem {
 
 [[nodiscard]] std::vector<DefProblem> problems_of(const VideoDef& video);
 [[nodiscard]] std::vector<DefProblem> problems_of(const OverlayTextDef& text);
+/// Plots of what the ropes do not have.
+[[nodiscard]] std::vector<DefProblem> problems_of(const OverlayDef& overlay,
+                                                  const std::vector<RopeDef>& ropes);
 /// `bodies`: number of ropes and nets.
 [[nodiscard]] std::vector<DefProblem> problems_of(const CameraDef& camera, std::size_t bodies);
 /// Golden times that do not increase, and pictures that are too large.

@@ -26,10 +26,9 @@ Sections sections_of(const toml::table& document, Problems& problems) {
             root.table("golden"), root.tables("rope"),   root.tables("net")};
 }
 
-/// Reads a table whose keys are all that there is to its definition.
+/// Adds the problems of a definition as a whole at their keys.
 template <class Def, class... More>
-void read_section(const TableReader& table, Def& def, const More&... more) {
-    read_fields(table, def);
+void check_section(const TableReader& table, const Def& def, const More&... more) {
     for (const DefProblem& problem : problems_of(def, more...)) {
         const auto value = table.find(problem.key);
         if (!value) continue;
@@ -38,6 +37,13 @@ void read_section(const TableReader& table, Def& def, const More&... more) {
         else
             value->add_problem(problem.problem);
     }
+}
+
+/// Reads a table whose keys are all that there is to its definition.
+template <class Def, class... More>
+void read_section(const TableReader& table, Def& def, const More&... more) {
+    read_fields(table, def);
+    check_section(table, def, more...);
 }
 
 /// Ropes and nets, with their styles.
@@ -96,6 +102,7 @@ Scene parse_scene(std::string_view toml, const std::string& source_name,
     if (size.fits) read_bodies(sections, size, solver, scene);
     problems.throw_if_any();
     check_cancelled();
+    check_section(sections.overlay, scene.overlay, scene.ropes);
     check_motion(sections, scene);
     problems.throw_if_any();
     return scene;

@@ -361,15 +361,15 @@ void check_definitions(const Scene& scene) {
                        is_rope ? fmt::format("rope[{}]", i) : fmt::format("net[{}]", i - scene.ropes.size()),
                        {part(scene.body_styles[i])}));
     }
-    const auto check_all = [&](std::string_view section, const auto& def) {
-        for (const DefProblem& one : problems_of(def))
+    const auto check_all = [&](std::string_view section, const auto& def, const auto&... more) {
+        for (const DefProblem& one : problems_of(def, more...))
             problems.add({}, dotted(section, one.key), one.problem);
     };
     check_all("video", scene.video);
     for (std::size_t i = 0; i < scene.overlay.texts.size(); ++i)
         check_all(fmt::format("overlay.texts[{}]", i), scene.overlay.texts[i]);
-    for (const DefProblem& one : problems_of(scene.camera, scene.ropes.size() + scene.nets.size()))
-        problems.add({}, dotted("camera", one.key), one.problem);
+    check_all("overlay", scene.overlay, scene.ropes);
+    check_all("camera", scene.camera, scene.ropes.size() + scene.nets.size());
     if (scene.golden) {
         check(table_of("golden", "golden", {part(*scene.golden)}));
         check_all("golden", *scene.golden);

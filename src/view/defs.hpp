@@ -89,9 +89,10 @@ struct BodyStyleDef {
     std::string label;  ///< its name, drawn at its pin or its free end; empty: none
 };
 
-/// Content of a live plot: the energy or the position of a tip over time, or the phase plane of the tip's
-/// horizontal position and velocity.
-enum class LivePlot { kNone, kEnergy, kTip, kPhase };
+/// Content of a live plot: the energies over time; of the ropes that turn about one pin, the angle of the tip
+/// over time, or its angular velocity against it; the distance of the tips of ropes 0 and 1 over time, on a
+/// logarithmic axis; the position of the first tip over time.
+enum class LivePlot { kEnergy, kAngle, kPhase, kDivergence, kTip };
 
 /// A text in the picture.
 struct OverlayTextDef {
@@ -105,12 +106,12 @@ struct OverlayTextDef {
 struct OverlayDef {
     /// The time; default: on an opaque ground, if the shorter side has at least 160 px.
     std::optional<bool> time;
-    std::optional<bool> scale_bar;  ///< a length of 1, 2 or 5 times a power of 10; default: as `time`
-    std::optional<bool> legend;     ///< the scale of style.color_by; default: as `time`
-    std::string title;              ///< UTF-8, of characters that DejaVu Sans has; empty: none
-    bool energy = false;            ///< the error of the energy (Figures::energy_error)
-    bool method = false;            ///< the methods, and the bound of the displayed error
-    LivePlot plot = LivePlot::kNone;
+    std::optional<bool> scale_bar;      ///< a length of 1, 2 or 5 times a power of 10; default: as `time`
+    std::optional<bool> legend;         ///< the scale of style.color_by; default: as `time`
+    std::string title;                  ///< UTF-8, of characters that DejaVu Sans has; empty: none
+    bool energy = false;                ///< the error of the energy (Figures::energy_error)
+    bool method = false;                ///< the methods, and the bound of the displayed error
+    std::vector<LivePlot> plots;        ///< each once; a frame without room for all shows the first ones
     std::vector<OverlayTextDef> texts;  ///< not in a picture of several poses
     /// 4 .. 400: the size of the text at the edges; default: grows with the shorter side
     std::optional<double> text_px;

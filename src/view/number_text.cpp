@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -30,6 +31,20 @@ double power_of_10(int exponent) {
     double power = 1.0;
     for (int i = 0; i < std::abs(exponent); ++i) power *= 10.0;
     return exponent < 0 ? 1.0 / power : power;
+}
+
+double log10_of(double value) {
+    constexpr double kLog10Of2 = 0.301029995663981195;
+    int exponent = 0;
+    double fraction = std::frexp(value, &exponent);
+    if (fraction < 0.5 * std::numbers::sqrt2) {
+        fraction *= 2.0;
+        --exponent;
+    }
+    const double ratio = (fraction - 1.0) / (fraction + 1.0);
+    double sum = 0.0;  // the series of the inverse hyperbolic tangent
+    for (int n = 23; n >= 1; n -= 2) sum = 1.0 / n + ratio * ratio * sum;
+    return exponent * kLog10Of2 + 2.0 * ratio * sum * std::numbers::log10e;
 }
 
 std::string power_of_10_text(int exponent) {
@@ -96,11 +111,12 @@ NumberTitle title_of(const std::string& name, const std::string& unit, double la
     constexpr double kMinDecimals = 0.01;
     constexpr double kMaxDigits = 1e4;
     const double least = unit.empty() ? kMinDecimals : 10.0 * kMinDecimals;
+    const bool is_angle = unit.starts_with("°") || unit.starts_with("rad");
     const bool is_plain = largest == 0.0 || (largest >= least * (1.0 - 1e-9) && largest < kMaxDigits);
     const int exponent = is_plain ? 0 : thousands_below(largest);
     const std::string power = exponent == 0 ? "" : power_of_10_text(exponent);
     if (unit.empty()) return {name + (power.empty() ? "" : " (" + power + ")"), power_of_10(exponent)};
-    const std::string prefix = prefix_of(exponent);
+    const std::string prefix = is_angle ? "" : prefix_of(exponent);
     const std::string factor = prefix.empty() && !power.empty() ? power + " " : "";
     return {fmt::format("{} ({}{}{})", name, factor, prefix, unit), power_of_10(exponent)};
 }

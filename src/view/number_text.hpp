@@ -9,6 +9,10 @@ namespace corda::view {
 /// 10 to that power, rounded once.
 [[nodiscard]] double power_of_10(int exponent);
 
+/// The logarithm to base 10 of a positive number, to within 1e-15 or 2e-16 of it. Computed from +, -, * and
+/// /, whose results do not depend on the CPU.
+[[nodiscard]] double log10_of(double value);
+
 /// "10⁻¹²"
 [[nodiscard]] std::string power_of_10_text(int exponent);
 
@@ -48,7 +52,8 @@ struct NumberTitle {
     double unit = 1.0;
 };
 
-/// The title for values up to `largest`. `unit` takes a prefix, or is empty for bare numbers.
+/// The title for values up to `largest`. `unit` takes a prefix, unless it is one of angles, or
+/// is empty for bare numbers.
 [[nodiscard]] NumberTitle title_of(const std::string& name, const std::string& unit, double largest);
 [[nodiscard]] NumberTitle title_of(const ColorScale& scale);
 /// A scale in words: "tension (kN) 0 .. 2".

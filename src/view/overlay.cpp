@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -43,6 +44,19 @@ std::size_t end_of_character(std::string_view utf8, std::size_t i) {
     return i;
 }
 
+/// "kinetic 1.25 J, potential −0.75 J", with a unit and decimals that depend on the scale alone.
+std::string energy_text(const Energy& energy, double scale_j) {
+    const NumberTitle title = title_of("", "J", scale_j);  // " (kJ)"
+    const double scale = scale_j / title.unit;
+    const int decimals = scale >= 100.0 ? 0 : scale >= 10.0 ? 1 : 2;
+    const auto text = [&](double energy_j) {
+        const std::string digits = fmt::format("{:.{}f}", std::abs(energy_j) / title.unit, decimals);
+        const bool is_negative = energy_j < 0.0 && digits.find_first_of("123456789") != std::string::npos;
+        return (is_negative ? "−" : "") + digits + " " + title.text.substr(2, title.text.size() - 3);
+    };
+    return "kinetic " + text(energy.kinetic_j) + ", potential " + text(energy.potential_j());
+}
+
 /// A text at the lower edge, to the right of the time.
 struct BottomText {
     bool (*is_shown)(const OverlayDef& def);
@@ -51,7 +65,8 @@ struct BottomText {
 constexpr BottomText kBottomTexts[] = {
     {[](const OverlayDef& def) { return def.energy; },
      [](const Caption& caption, double /*interval_s*/) {
-         return "energy error " + (caption.energy_error ? power_text(*caption.energy_error) : "not defined");
+         if (caption.energy_error) return "energy error " + power_text(*caption.energy_error);
+         return caption.energy ? energy_text(*caption.energy, caption.energy_scale_j) : "";
      }},
 };
 
@@ -73,11 +88,12 @@ Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int he
       side_px_(std::min(width, height)),
       em_px_(def.text_px ? rounded(*def.text_px) : em_of(width, height)),
       edge_px_(edge_of(side_px_, em_px_)),
-      interval_s_(interval_s),
-      plot_(style, width, height) {
-    const Room room = room_beside(def.plot, width, height);
-    width_ = room.width_px;
-    height_ = room.height_px;
+      interval_s_(interval_s) {
+    const PlotLayout layout = lay_out_plots(def.plots.size(), width, height);
+    width_ = layout.width_px;
+    height_ = layout.height_px;
+    for (const PixelRect& panel : layout.panels)
+        plots_.emplace_back(style, width, height, panel, layout.em_px);
     panel_.right_panel_px = width - width_;
     panel_.bottom_panel_px = height - height_;
     const Look look = look_of(style);
@@ -88,6 +104,15 @@ Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int he
     color_ = text_color(look);
     title_lines_ = wrapped_title();
     while (decimals_ < kMaxDecimals && interval_s * power_of_10(decimals_) < 1.0) ++decimals_;
+}
+
+void Overlay::set_plots(std::span<const PlotData> data, std::span<const Color> body_colors) {
+    for (std::size_t i = 0; i < plots_.size(); ++i) plots_[i].set_data(data[i], body_colors, 0, font_);
+    std::map<int, int> widest_px;  // by the left edge of panels above each other
+    for (const PlotPanel& plot : plots_)
+        widest_px[plot.panel().x0] = std::max(widest_px[plot.panel().x0], plot.label_px());
+    for (std::size_t i = 0; i < plots_.size(); ++i)
+        plots_[i].set_data(data[i], body_colors, widest_px[plots_[i].panel().x0], font_);
 }
 
 bool Overlay::has_bottom() const {
@@ -200,7 +225,7 @@ std::string Overlay::time_text(double time_s) const {
 }
 
 void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& list) {
-    plot_.draw_axes(list, font_);
+    for (const PlotPanel& plot : plots_) plot.draw_axes(list, font_);
     for (std::size_t i = 0; i < caption.labels.size(); ++i)
         draw_label(labels_[i], caption.labels[i].first, caption.labels[i].second, list);
     int left_px = edge_px_;

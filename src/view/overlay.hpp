@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "corda/sim/simulation.hpp"
 #include "corda/view/camera.hpp"
 #include "corda/view/colors.hpp"
 #include "corda/view/defs.hpp"
@@ -24,12 +25,14 @@ struct Caption {
     std::string method;
     /// Where the particles of each label are: that next to it, and that from which its line comes.
     std::vector<std::pair<PixelPoint, PixelPoint>> labels = {};
+    std::optional<Energy> energy = {};  ///< shown if its error is not defined; potentials since the start
+    double energy_scale_j = 0.0;        ///< for the unit of that
 };
 
 /// Adds the points of a state to a caption.
 void locate(std::span<const BodyLabel> labels, const State& state, const Camera& camera, Caption& caption);
 
-/// Texts and scale bar at the edges of a picture, and the live plot. Time and energy are at the lower
+/// Texts and scale bar at the edges of a picture, and the live plots. Time and energy are at the lower
 /// left, the scale bar at the lower right, title and method at the upper left, the legend at the upper right.
 /// A long title or method is shortened; other items without room are left out.
 class Overlay {
@@ -45,12 +48,12 @@ class Overlay {
     void set_labels(std::vector<BodyLabel> labels, std::span<const MotionBounds> motion,
                     std::vector<Drawn>& drawn);
     [[nodiscard]] std::span<const BodyLabel> labels() const { return labels_; }
-    /// Sets the data of the plot; without data there is no plot.
-    void set_plot(const PlotData& data, std::span<const Color> body_colors) {
-        plot_.set_data(data, body_colors, font_);
+    /// Sets the data of the plots, of which those without room are left out; without data there are none.
+    void set_plots(std::span<const PlotData> data, std::span<const Color> body_colors);
+    /// Adds the curves of the plots up to a time.
+    void draw_curves(double time_s, DrawList& list) const {
+        for (const PlotPanel& plot : plots_) plot.draw_curves(time_s, list);
     }
-    /// Adds the curves of the plot up to a time.
-    void draw_curves(double time_s, DrawList& list) const { plot_.draw_curves(time_s, list); }
     /// Adds the stamps of a picture with this camera scale.
     void draw(const Caption& caption, double pixels_per_metre, DrawList& list);
 
@@ -92,8 +95,8 @@ class Overlay {
     std::optional<ColorScale> scale_;
     std::vector<BodyLabel> labels_;
     Color color_;
-    Insets panel_;  ///< space taken by the plot
-    int width_;     ///< width left by the plot
+    Insets panel_;  ///< space taken by the plots
+    int width_;     ///< width left by the plots
     int height_;
     int side_px_;  ///< the shorter one of the frame
     int em_px_;
@@ -102,7 +105,7 @@ class Overlay {
     double interval_s_;
     int decimals_ = 2;
     Font font_;
-    PlotPanel plot_;
+    std::vector<PlotPanel> plots_;
 };
 
 /// "t = 1.20 s"

@@ -49,7 +49,7 @@ std::vector<int> minor_ticks(const PlotAxis& axis) {
 }  // namespace
 
 double PlotAxis::px(double value) const {
-    const double at = is_log ? std::log10(value) : value;
+    const double at = is_log ? log10_of(value) : value;
     return low_px + (at - low) / (high - low) * (high_px - low_px);
 }
 

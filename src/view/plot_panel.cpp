@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "corda/view/colors.hpp"
@@ -14,7 +13,11 @@ namespace {
 
 constexpr double kMaxWidthShare = 0.38;  // if the minimum size is larger
 constexpr double kMaxHeightShare = 0.5;
-constexpr double kPanelShare = 0.36;           // of the frame
+constexpr double kPanelShare = 0.36;  // of the frame
+// The texts of several plots are smaller down to these shares, in one column or row, or in two.
+constexpr double kSmall = 0.75;
+constexpr double kSmallest = 0.45;
+constexpr int kMinEmPx = 7;
 constexpr double kHeightPerWidth = 0.8;        // of the box, for a panel at the right
 constexpr double kBoxLineWidth = 1.0 / 600.0;  // of the frame's shorter side
 constexpr double kCurveWidth = 1.0 / 300.0;
@@ -26,6 +29,9 @@ constexpr double kAboveBox = 1.1;  // from the baseline above it
 constexpr double kMinBox = 4.0;
 constexpr double kMinPanelWidth = 9.5;
 constexpr double kMinPanelHeight = 13.0;
+constexpr double kMinRowWidth = 12.0;  // of panels beside each other below the picture
+constexpr double kTight = 0.85;        // of the height in a column, for the smallest texts
+constexpr int kMaxNameRows = 3;
 constexpr double kPerLabel = 3.0;  // of the height
 
 constexpr int kMinLabels = 2;
@@ -58,23 +64,57 @@ Color faint(Color color, std::uint8_t alpha) {
 
 }  // namespace
 
-Room room_beside(LivePlot plot, int width_px, int height_px) {
+PlotLayout lay_out_plots(std::size_t count, int width_px, int height_px) {
     const bool is_beside = width_px > height_px;
-    const int all_px = std::max(width_px, height_px);
+    const int em_px = em_of(width_px, height_px);
+    const int all_px = std::max(width_px, height_px);   // along which the picture makes room
+    const int side_px = std::min(width_px, height_px);  // along which panels stand beside each other
     const double least_em = is_beside ? kMinPanelWidth : kMinPanelHeight;
-    const int least_px = rounded(least_em * em_of(width_px, height_px));
-    const int panel_px = std::max(rounded(kPanelShare * all_px), least_px);
-    const bool has_room = panel_px <= (is_beside ? kMaxWidthShare : kMaxHeightShare) * all_px;
-    if (plot == LivePlot::kNone || !has_room) return {width_px, height_px};
-    if (is_beside) return {width_px - panel_px, height_px};
-    return {width_px, height_px - panel_px};
+    const double least_side_em = is_beside ? kMinPanelHeight : kMinRowWidth;
+    const auto lay_out = [&](int shown, int lines, double smallest) {
+        const int per_line = (shown + lines - 1) / lines;
+        const int room_px = lines == 1 ? rounded(kPanelShare * all_px) : all_px / 2;
+        const double tight = is_beside && smallest == kSmallest ? kTight : 1.0;
+        int own_em_px = em_px;
+        if (shown > 1)
+            own_em_px =
+                std::min(own_em_px, static_cast<int>(std::min(room_px / (lines * least_em),
+                                                              side_px / (per_line * tight * least_side_em))));
+        const int taken_px = std::max(room_px, rounded(lines * least_em * own_em_px));
+        const double most = is_beside && lines == 1 ? kMaxWidthShare : kMaxHeightShare;
+        PlotLayout layout{width_px, height_px};
+        if (taken_px > most * all_px || own_em_px < std::max<double>(smallest * em_px, kMinEmPx))
+            return layout;
+        layout.em_px = own_em_px;
+        (is_beside ? layout.width_px : layout.height_px) -= taken_px;
+        for (int i = 0; i < shown; ++i) {
+            const int line = i / per_line;
+            const int in_line = std::min(per_line, shown - line * per_line);
+            const int begin_px = all_px - taken_px + line * taken_px / lines;
+            const int end_px = all_px - taken_px + (line + 1) * taken_px / lines;
+            const int from_px = i % per_line * side_px / in_line;
+            const int to_px = (i % per_line + 1) * side_px / in_line;
+            layout.panels.push_back(is_beside ? PixelRect{begin_px, from_px, end_px, to_px}
+                                              : PixelRect{from_px, begin_px, to_px, end_px});
+        }
+        return layout;
+    };
+    for (auto shown = static_cast<int>(count); shown > 0; --shown) {
+        for (const auto& [lines, smallest] :
+             {std::pair{1, kSmall}, {2, kSmall}, {is_beside ? 1 : 2, kSmallest}}) {
+            if (shown <= lines && lines > 1) continue;
+            PlotLayout layout = lay_out(shown, lines, smallest);
+            if (!layout.panels.empty()) return layout;
+        }
+    }
+    return {width_px, height_px};
 }
 
-PlotPanel::PlotPanel(const StyleDef& style, int width_px, int height_px)
-    : width_px_(width_px), height_px_(height_px), is_beside_(width_px > height_px) {
+PlotPanel::PlotPanel(const StyleDef& style, int width_px, int height_px, const PixelRect& panel, int em_px)
+    : width_px_(width_px), height_px_(height_px), panel_(panel) {
     const int side_px = std::min(width_px, height_px);
-    plot_.em_px = em_of(width_px, height_px);
-    edge_px_ = edge_of(side_px, plot_.em_px);
+    plot_.em_px = em_px;
+    edge_px_ = edge_of(side_px, em_px);
     plot_.line_px = std::max(1, rounded(kBoxLineWidth * side_px));
     text_color_ = text_color(look_of(style));
     // The theme's: those of a style are for its bodies.
@@ -83,33 +123,18 @@ PlotPanel::PlotPanel(const StyleDef& style, int width_px, int height_px)
     palette_ = look_of(plain).palette;
 }
 
-std::vector<Color> PlotPanel::choose_colors(const PlotData& data, std::span<const Color> body_colors) const {
-    std::vector<Color> colors;
-    const auto add = [&](Color color) {
-        if (std::find(colors.begin(), colors.end(), color) == colors.end()) colors.push_back(color);
-    };
-    if (data.body) add(body_colors[*data.body]);
-    if (data.body) add(text_color_);
-    const auto is_free = [&](Color color) {
-        return color != text_color_ &&
-               std::find(body_colors.begin(), body_colors.end(), color) == body_colors.end();
-    };
-    std::copy_if(palette_.begin(), palette_.end(), std::back_inserter(colors), is_free);
-    for (const Color color : palette_) add(color);
-    if (!data.body && data.curves.size() > 2) colors[2] = text_color_;
-    return colors;
-}
-
-void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_colors, Font& font) {
-    const Room room = room_beside(LivePlot::kEnergy, width_px_, height_px_);
-    const PixelRect panel{is_beside_ ? room.width_px : 0, is_beside_ ? 0 : room.height_px, width_px_,
-                          height_px_};
+void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_colors, int least_label_px,
+                         Font& font) {
     const bool is_over_time = data.end_s > 0.0;
-    const auto start_axis = [](const PlotData::AxisName& name, const ValueRange& range) {
-        const NumberTitle title = title_of(name.text, name.unit, range.largest());
+    const auto start_axis = [&](const PlotData::AxisName& name, const ValueRange& range) {
         PlotAxis axis;
-        axis.low = range.low;
-        axis.high = range.high;
+        axis.is_log = name.is_log;
+        axis.low = name.is_log ? log10_of(range.low) : range.low;
+        axis.high = name.is_log ? log10_of(range.high) : range.high;
+        const double largest = name.is_log ? 0.0 : range.largest();
+        NumberTitle title = title_of(name.text, name.unit, largest);
+        if (!name.symbol.empty() && font.width_px(title.text, plot_.em_px) > panel_.width() - 2 * edge_px_)
+            title = title_of(name.symbol, name.unit, largest);
         axis.title = title.text;
         axis.unit = title.unit;
         return axis;
@@ -117,14 +142,18 @@ void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_color
     plot_.x =
         start_axis(data.x, is_over_time ? ValueRange{0.0, data.end_s}
                                         : drawable(range_of(data, &CurvePoint::x), data.x.least_extent));
-    plot_.y = start_axis(data.y, drawable(range_of(data, &CurvePoint::y), data.y.least_extent));
+    const ValueRange y = range_of(data, &CurvePoint::y);
+    plot_.y = start_axis(data.y, data.y.is_log ? y : drawable(y, data.y.least_extent));
     curves_.clear();
-    const std::vector<Color> colors = choose_colors(data, body_colors);
-    for (std::size_t i = 0; i < data.curves.size(); ++i)
-        curves_.push_back({data.curves[i].name, colors[i], {}, {}, data.curves[i].points});
-    place_names(panel, font);
-    is_shown_ = !panel.empty() && can_be_divided(plot_.x.high - plot_.x.low) &&
-                can_be_divided(plot_.y.high - plot_.y.low) && place_box(panel, is_over_time, font);
+    for (const PlotData::Curve& curve : data.curves) {
+        const auto hue = static_cast<std::size_t>(curve.hue);
+        const Color own = hue == 0 ? text_color_ : palette_[hue];
+        curves_.push_back({curve.name, curve.body ? body_colors[*curve.body] : own, {}, {}, curve.points});
+    }
+    place_names(font);
+    const bool is_drawable = can_be_divided(plot_.x.high - plot_.x.low) &&
+                             (data.y.is_log || can_be_divided(plot_.y.high - plot_.y.low));
+    is_shown_ = is_drawable && place_box(is_over_time, least_label_px, font);
     if (!is_shown_) return;
     for (PixelCurve& curve : curves_) {
         std::vector<PixelPoint> points;
@@ -137,18 +166,18 @@ void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_color
     }
 }
 
-void PlotPanel::place_names(const PixelRect& panel, Font& font) {
+void PlotPanel::place_names(Font& font) {
     names_.clear();
     name_rows_ = 0;
-    const int begin_px = panel.x0 + edge_px_;
-    const int end_px = panel.x1 - edge_px_;
+    const int begin_px = panel_.x0 + edge_px_;
+    const int end_px = panel_.x1 - edge_px_;
     int x_px = begin_px;
     for (const PixelCurve& curve : curves_) {
         if (curve.name.empty()) continue;
         const int name_px = font.width_px(curve.name, plot_.em_px);
         if (x_px > begin_px && x_px + name_px > end_px) {
             x_px = begin_px;
-            ++name_rows_;
+            if (++name_rows_ == kMaxNameRows) return;
         }
         names_.push_back({curve.name, curve.color, x_px, name_rows_});
         x_px += name_px + plot_.em_px;
@@ -156,29 +185,35 @@ void PlotPanel::place_names(const PixelRect& panel, Font& font) {
     if (!names_.empty()) ++name_rows_;
 }
 
-bool PlotPanel::place_box(const PixelRect& panel, bool is_over_time, Font& font) {
+bool PlotPanel::place_box(bool is_over_time, int least_label_px, Font& font) {
     const int gap_px = rounded(kGap * plot_.em_px);
-    const int above_px =
-        name_rows_ * rounded(kLine * plot_.em_px) + rounded((kAscent + kAboveBox) * plot_.em_px);
-    const int top_px = is_beside_ ? edge_px_ : gap_px;
-    const int all_px = panel.height() - top_px - edge_px_ - above_px - plot_.title_px();
-    const int most_px = is_beside_ ? rounded(kHeightPerWidth * panel.width()) : all_px;
-    const int height_px = std::min(all_px, most_px);
     const int least_px = rounded(kMinBox * plot_.em_px);
-    if (height_px < least_px) return false;
-    plot_.box.y0 = panel.y0 + top_px + (all_px - height_px) / 2 + above_px;
+    const int top_px = panel_.y0 == 0 ? edge_px_ : gap_px;
+    const int bottom_px = panel_.y1 == height_px_ ? edge_px_ : gap_px;
+    int above_px = 0;
+    int all_px = 0;
+    for (; name_rows_ >= 0; --name_rows_) {
+        above_px = name_rows_ * rounded(kLine * plot_.em_px) + rounded((kAscent + kAboveBox) * plot_.em_px);
+        all_px = panel_.height() - top_px - bottom_px - above_px - plot_.title_px();
+        if (all_px >= least_px) break;
+        std::erase_if(names_, [this](const Name& name) { return name.row == name_rows_ - 1; });
+    }
+    if (all_px < least_px) return false;
+    const int most_px = width_px_ > height_px_ ? rounded(kHeightPerWidth * panel_.width()) : all_px;
+    const int height_px = std::min(all_px, most_px);
+    plot_.box.y0 = panel_.y0 + top_px + (all_px - height_px) / 2 + above_px;
     plot_.box.y1 = plot_.box.y0 + height_px;
     plot_.y.low_px = plot_.box.y1 - 1;
     plot_.y.high_px = plot_.box.y0;
     const int y_labels = std::clamp(rounded(height_px / (kPerLabel * plot_.em_px)), kMinLabels, kMaxLabels);
     plot_.y.extend_to_labels(y_labels);
     plot_.y.set_labels(y_labels + 1);
-    int widest_px = 0;
+    label_px_ = least_label_px;
     for (const PlotAxis::Label& label : plot_.y.labels)
-        widest_px = std::max(widest_px, font.width_px(label.text, plot_.em_px));
-    plot_.box.x0 = panel.x0 + edge_px_ + widest_px + gap_px + rounded(kTickLength * plot_.em_px);
+        label_px_ = std::max(label_px_, font.width_px(label.text, plot_.em_px));
+    plot_.box.x0 = panel_.x0 + edge_px_ + label_px_ + gap_px + rounded(kTickLength * plot_.em_px);
     // Half of the last label on the x axis.
-    plot_.box.x1 = panel.x1 - edge_px_ - plot_.em_px;
+    plot_.box.x1 = panel_.x1 - edge_px_ - plot_.em_px;
     if (plot_.box.width() < least_px) return false;
     plot_.x.low_px = plot_.box.x0;
     plot_.x.high_px = plot_.box.x1 - 1;
@@ -225,7 +260,9 @@ void PlotPanel::draw_axes(DrawList& list, Font& font) const {
     };
     const int row_px = rounded(kLine * plot_.em_px);
     const int title_px = plot_.box.y0 - name_rows_ * row_px - rounded(kAboveBox * plot_.em_px);
-    write(plot_.y.title, names_.empty() ? plot_.box.x0 : names_.front().x_px, title_px, text_color_);
+    const int last_px = panel_.x1 - edge_px_ - font.width_px(plot_.y.title, plot_.em_px);
+    write(plot_.y.title, names_.empty() ? std::min(plot_.box.x0, last_px) : names_.front().x_px, title_px,
+          text_color_);
     for (const Name& name : names_)
         write(name.text, name.x_px, title_px + (name.row + 1) * row_px, name.color);
 }

@@ -23,43 +23,53 @@ struct CurvePoint {
 
 /// Data of a live plot.
 struct PlotData {
+    /// Colours of quantities, in all films: that of texts, or one of the theme's, of which 0 is a rope's.
+    enum class Hue { kText, kKinetic, kY, kPotential, kX };
     struct Curve {
-        std::string name;  ///< empty: none is shown
-        std::vector<CurvePoint> points =
-            {};  ///< in order of time, at least one; all curves have the same times
+        std::string name = {};  ///< empty: none is shown
+        Hue hue = Hue::kText;
+        std::optional<std::size_t> body = {};  ///< whose colour it has instead
+        std::vector<CurvePoint> points = {};   ///< in order of time, at least one; all have the same times
     };
-    /// Title of an axis, the unit of its values, which takes a prefix, and the minimum extent.
+    /// Title of an axis, the unit of its values (see title_of()), and the minimum extent.
     struct AxisName {
         std::string text;
         std::string unit;
         double least_extent = 0.0;
+        std::string symbol = {};  ///< in place of a text that is too long
+        bool is_log = false;      ///< all values are above 0
     };
 
     AxisName x;
     AxisName y;
     /// End of the x axis if x is the time; 0 otherwise.
     double end_s = 0.0;
-    std::vector<Curve> curves;  ///< 1 .. 3, the first in front
-    /// The body of the curves; std::nullopt: all bodies.
-    std::optional<std::size_t> body = {};
+    std::vector<Curve> curves;  ///< at least one, the first in front
 };
 
-/// Size of the upper left part of a frame that a live plot leaves to the picture.
-struct Room {
-    int width_px = 0;
-    int height_px = 0;
+/// The parts of a frame: the upper left one for the picture, and the panels of the live plots, in a column to
+/// the right of it if the frame is wider than high, otherwise in a row below; in two columns or rows if their
+/// texts would be too small in one. A frame without room for all plots has panels for the first ones.
+struct PlotLayout {
+    int width_px = 0;   ///< of the picture
+    int height_px = 0;  ///< of the picture
+    int em_px = 0;      ///< of the plots' texts
+    std::vector<PixelRect> panels = {};
 };
-[[nodiscard]] Room room_beside(LivePlot plot, int width_px, int height_px);
+[[nodiscard]] PlotLayout lay_out_plots(std::size_t count, int width_px, int height_px);
 
-/// A plot of the whole motion whose curves grow with time: to the right of the picture if the frame is wider
-/// than high, otherwise below. Small frames have none.
+/// A plot of the whole motion whose curves grow with time.
 class PlotPanel {
   public:
-    PlotPanel(const StyleDef& style, int width_px, int height_px);
+    /// `panel` and `em_px`: see PlotLayout.
+    PlotPanel(const StyleDef& style, int width_px, int height_px, const PixelRect& panel, int em_px);
 
-    /// Sets the data and fits the axes to them. Nothing is drawn before the first call. If the data belong to
-    /// a body, the first curve has its colour; the other curves have colours that no body has.
-    void set_data(const PlotData& data, std::span<const Color> body_colors, Font& font);
+    /// Sets the data and fits the axes to them. Nothing is drawn before the first call. `least_label_px`:
+    /// minimum width of the labels of the y axis.
+    void set_data(const PlotData& data, std::span<const Color> body_colors, int least_label_px, Font& font);
+    /// Width of the labels of the y axis: panels above each other have the same.
+    [[nodiscard]] int label_px() const { return label_px_; }
+    [[nodiscard]] const PixelRect& panel() const { return panel_; }
     /// Adds the curves up to a time, between points by straight lines.
     void draw_curves(double time_s, DrawList& list) const;
     /// Adds the parts that do not change.
@@ -83,18 +93,17 @@ class PlotPanel {
         int row = 0;
     };
 
-    [[nodiscard]] std::vector<Color> choose_colors(const PlotData& data,
-                                                   std::span<const Color> body_colors) const;
-    void place_names(const PixelRect& panel, Font& font);
+    void place_names(Font& font);
     /// Places the box and finds the labels; false if there is no room.
-    [[nodiscard]] bool place_box(const PixelRect& panel, bool is_over_time, Font& font);
+    [[nodiscard]] bool place_box(bool is_over_time, int least_label_px, Font& font);
 
     int width_px_;
     int height_px_;
-    bool is_beside_;   ///< to the right of the picture
+    PixelRect panel_;
+    int label_px_ = 0;
     int edge_px_ = 0;  ///< from the edges of the frame to texts
     Color text_color_;
-    std::vector<Color> palette_;
+    std::vector<Color> palette_;  ///< of the theme
     bool is_shown_ = false;
     PlotBox plot_;
     std::vector<PixelCurve> curves_;

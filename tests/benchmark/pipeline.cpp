@@ -34,7 +34,7 @@ const Look kPlain{"style.trail_s=0",        "style.background=#0e1320", "style.p
                   "overlay.scale_bar=false"};
 const Look kOverlays{"style.trail_s=0", "overlay.title=A swing", "overlay.energy=true",
                      "overlay.method=true"};
-const Look kPlot{"style.trail_s=0", "overlay.plot=energy"};
+const Look kPlot{"style.trail_s=0", "overlay.plots=[\"energy\"]"};
 const Look kTrail;
 const Look kBlur8{"style.trail_s=0", "video.shutter=0.5", "video.subframes=8"};
 const Look kBlur16{"style.trail_s=0", "video.shutter=0.5", "video.subframes=16"};

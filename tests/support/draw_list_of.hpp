@@ -22,9 +22,8 @@ inline void include(const State& state, std::vector<MotionBounds>& motion) {
     for (std::size_t i = 0; i < motion.size(); ++i) motion[i].include(state.x_m[i], state.y_m[i]);
 }
 
-/// The live plot of a film.
-inline std::optional<view::PlotData> plotted_of(Film& film) {
-    if (film.scene().overlay.plot == LivePlot::kNone) return std::nullopt;
+/// The live plots of a film.
+inline std::vector<view::PlotData> plotted_of(Film& film) {
     const pipeline::LivePlotData curves(film.scene(), film.system());
     std::vector<MethodDef> methods;
     for (const BodyPlan& body : film.plan().bodies) methods.push_back(body.method);
@@ -40,7 +39,7 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
                                    const view::Caption& caption = {},
                                    std::span<const view::Trail> trails = {},
                                    const sim::Histogram& histogram = {},
-                                   const std::optional<view::PlotData>& plot = {}) {
+                                   const std::vector<view::PlotData>& plots = {}) {
     const int width_px = scene.video.width_px;
     const int height_px = scene.video.height_px;
     view::SceneView scene_view(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, width_px,
@@ -55,8 +54,8 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
     view::DrawList list;
     const view::Camera map(camera, system.origin_m, width_px, height_px);
     scene_view.draw(state, map, list, trails);
-    if (plot) overlay.set_plot(*plot, scene_view.body_colors());
-    if (plot) overlay.draw_curves(state.time_s, list);
+    if (!plots.empty()) overlay.set_plots(plots, scene_view.body_colors());
+    overlay.draw_curves(state.time_s, list);
     std::vector<view::Drawn> drawn;
     overlay.set_labels(scene_view.labels(), motion, drawn);
     view::Caption located = caption;

@@ -70,5 +70,17 @@ TEST(DirectionOf, IsNearTheLibrarysSineAndCosineOfAnyAngle) {
     }
 }
 
+TEST(AngleRad, IsNearTheLibrarysInAllDirections) {
+    for (int i = -40000; i <= 40000; ++i) {
+        const double y = 1e3 * std::sin(0.0173 * i);
+        const double x = 1e3 * std::cos(0.0173 * i);
+        EXPECT_NEAR(angle_rad(y, x), std::atan2(y, x), 2e-15) << i;  // measured 9e-16
+    }
+    EXPECT_EQ(angle_rad(0.0, 0.0), 0.0);
+    EXPECT_EQ(angle_rad(1e300, 0.0), std::numbers::pi / 2.0);
+    EXPECT_EQ(angle_rad(0.0, -1e-300), std::numbers::pi);
+    EXPECT_EQ(angle_rad(-2.0, 0.0), -std::numbers::pi / 2.0);
+}
+
 }  // namespace
 }  // namespace corda

@@ -15,13 +15,13 @@ using testing::ElementsAre;
 TEST(Drawings, HaveTheShapeOfTheSceneAtThreeHundredPixelsPerInch) {
     Scene scene = parse_scene("schema = 1\n" + pendulum_toml(), "a");
     scene.style.rope_width_px = 4.0;
-    scene.overlay.plot = LivePlot::kEnergy;
+    scene.overlay.plots = {LivePlot::kEnergy};
     const Scene look = look_in_print(scene, 85.0);
     EXPECT_EQ(look.video.width_px, 1004);
     EXPECT_EQ(look.video.height_px, 565);
     EXPECT_NEAR(*look.style.rope_width_px, 4.0 * 1004 / 320, 0.01);
     EXPECT_NEAR(*look.overlay.text_px, 8.0 / 72.0 * 300.0, 1e-9);  // 8 points
-    EXPECT_EQ(look.overlay.plot, LivePlot::kNone);
+    EXPECT_TRUE(look.overlay.plots.empty());
     scene.video.width_px = 100;
     scene.video.height_px = 10000;
     EXPECT_EQ(look_in_print(scene, 85.0).video.height_px, 1406);  // fits a page

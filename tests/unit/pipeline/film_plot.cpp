@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -16,7 +18,7 @@ namespace corda {
 namespace {
 
 Scene plotted_scene(const std::string& plot, const std::vector<Setting>& settings = {}) {
-    std::vector<Setting> all{"overlay.plot=\"" + plot + "\""};
+    std::vector<Setting> all{"overlay.plots=[\"" + plot + "\"]"};
     all.insert(all.end(), settings.begin(), settings.end());
     return parse_scene(R"(schema = 1
 [world]
@@ -32,7 +34,7 @@ fps = 30
 }
 
 view::PlotData plot_of(Film& film) {
-    return test::plotted_of(film).value();
+    return test::plotted_of(film).at(0);
 }
 
 TEST(FilmPlot, ShowsTheEnergyOfAPendulum) {
@@ -47,11 +49,10 @@ TEST(FilmPlot, ShowsTheEnergyOfAPendulum) {
         const double potential_j = data.curves[1].points[i].y;
         const State& state = film.state_at(data.curves[0].points[i].time_s);
         EXPECT_NEAR(kinetic_j, 3.0 * 9.81 * -state.y_m[1], 1e-5 * 58.86);
-        EXPECT_NEAR(kinetic_j + potential_j, 58.86, 1e-3);
+        EXPECT_NEAR(kinetic_j + potential_j, 0.0, 1e-3);
         EXPECT_DOUBLE_EQ(data.curves[2].points[i].y, kinetic_j + potential_j);
     }
-    const auto is_zero = [](const view::CurvePoint& point) { return point.y == 0.0; };
-    EXPECT_EQ(std::count_if(data.curves[1].points.begin(), data.curves[1].points.end(), is_zero), 1);
+    EXPECT_EQ(data.curves[1].points.front().y, 0.0);
 }
 
 TEST(FilmPlot, HasNoTotalEnergyWithRelaxation) {
@@ -78,7 +79,7 @@ TEST(FilmPlot, IsSharpInABlurredFrame) {
     Film film(scene);
     const Image blurred = film.frame(12);
     const Image sharp = film.still(film.time_s(12));
-    const view::Room room = view::room_beside(LivePlot::kTip, 256, 144);
+    const view::PlotLayout room = view::lay_out_plots(1, 256, 144);
     ASSERT_LT(room.width_px, 256);
     EXPECT_FALSE(blurred == sharp);
     const auto row_bytes = static_cast<std::size_t>(4 * (256 - room.width_px));
@@ -93,18 +94,82 @@ TEST(FilmPlot, ShowsTheTipInWorldCoordinates) {
     const view::PlotData data = plot_of(film);
     EXPECT_EQ(data.curves[0].points.front().y, 7.0);
     EXPECT_EQ(data.curves[1].points.front().y, 7.0);
-    Film phase(plotted_scene("phase"));
-    const view::PlotData portrait = plot_of(phase);
-    EXPECT_EQ(portrait.curves[0].points.front().x, 7.0);
-    EXPECT_EQ(portrait.curves[0].points.front().y, 0.0);
-    EXPECT_LT(portrait.curves[0].points.back().y, 0.0);
+}
+
+TEST(FilmPlot, ShowsTheAngleInDegreesAndItsRate) {
+    Film film(plotted_scene("angle"));
+    const view::PlotData angle = plot_of(film);
+    Film other(plotted_scene("phase"));
+    const view::PlotData phase = plot_of(other);
+    ASSERT_EQ(angle.curves.size(), 1U);
+    EXPECT_EQ(angle.curves[0].body, 0U);
+    EXPECT_NEAR(angle.curves[0].points.front().y, 90.0, 1e-12);
+    EXPECT_NEAR(phase.curves[0].points.front().x, std::numbers::pi / 2.0, 1e-14);
+    for (std::size_t i = 0; i < angle.curves[0].points.size(); i += 7) {
+        const double angle_rad = phase.curves[0].points[i].x;
+        EXPECT_DOUBLE_EQ(angle.curves[0].points[i].y, angle_rad * 180.0 / std::numbers::pi);
+        // What has fallen from the height of the pin is kinetic energy: l w^2 = 2 g cos(angle).
+        const double rate_rad_s = phase.curves[0].points[i].y;
+        EXPECT_NEAR(2.0 * rate_rad_s * rate_rad_s, 2.0 * 9.81 * std::cos(angle_rad), 1e-3);
+    }
+}
+
+TEST(FilmPlot, ShowsADistanceThatGrowsFromZero) {
+    const Scene scene = parse_scene(R"(schema = 1
+[world]
+duration = 1.0
+[[rope]]
+label = "A"
+hang = { links = 1, length = 2.0, angle_deg = 30.0 }
+[[rope]]
+hang = { links = 1, length = 2.0, angle_deg = 30.0 }
+velocity = [0.1, 0.0]
+[[rope]]
+hang = { links = 1, length = 2.0, angle_deg = -30.0 }
+[overlay]
+plots = ["divergence", "angle", "tip"]
+)",
+                                    "plot.toml");
+    Film film(scene);
+    const std::vector<view::PlotData> plots = test::plotted_of(film);
+    ASSERT_EQ(plots.size(), 3U);
+    const std::vector<view::CurvePoint>& points = plots[0].curves.at(0).points;
+    EXPECT_EQ(plots[0].curves[0].name, "A – rope 1");
+    EXPECT_GT(points.front().y, 0.0);  // a logarithmic axis has no 0
+    EXPECT_EQ(points.front().y,
+              std::min_element(points.begin(), points.end(), [](auto& a, auto& b) { return a.y < b.y; })->y);
+    const State& state = film.state_at(1.0);
+    EXPECT_DOUBLE_EQ(points.back().y, std::hypot(state.x_m[3] - state.x_m[1], state.y_m[3] - state.y_m[1]));
+    ASSERT_EQ(plots[1].curves.size(), 3U);
+    EXPECT_EQ(plots[1].curves[0].name, "A");
+    EXPECT_EQ(plots[1].curves[2].name, "rope 2");
+    EXPECT_EQ(plots[2].curves[0].name, "x of A");
+}
+
+TEST(FilmPlot, RefusesWhatTheSceneDoesNotHave) {
+    const auto refuse = [](const std::string& plots, const std::string& rope, const std::string& problem) {
+        const std::string text = "schema = 1\n[[rope]]\n" + rope + "\n[overlay]\nplots = " + plots + "\n";
+        const test::Failure failure =
+            test::failure_of([&] { static_cast<void>(parse_scene(text, "plot.toml")); });
+        EXPECT_EQ(failure.code, ExitCode::kInvalidScene);
+        EXPECT_NE(failure.message.find(problem), std::string::npos) << failure.message;
+    };
+    const std::string free = "points = [[0.0, 0.0], [1.0, 0.0]]\npinned = []";
+    const std::string closed = "points = [[0.0, 0.0], [1.0, 0.0], [0.5, -1.0]]\nclosed = true";
+    refuse("[\"angle\"]", free, "plot.toml:6:10: overlay.plots[0]: no rope has one pinned particle");
+    refuse("[\"tip\", \"phase\"]", closed,
+           "plot.toml:6:17: overlay.plots[1]: no rope has one pinned particle");
+    refuse("[\"divergence\"]", free, "overlay.plots[0]: it is the distance of the tips of ropes 0 and 1");
+    refuse("[\"tip\", \"tip\"]", free, "overlay.plots[1]: the same plot twice");
+    refuse("\"tip\"", free, "overlay.plots");
+    refuse("[\"tips\"]", free, "did you mean \"tip\"?");
 }
 
 TEST(FilmPlot, DoesNotChangeTheMotionAndSimulatesItOnce) {
     Scene scene = plotted_scene("energy");
     Film film(scene);
     static_cast<void>(film.frame(3));
-    scene.overlay.plot = LivePlot::kNone;
+    scene.overlay.plots.clear();
     Film plain(scene);
     static_cast<void>(plain.frame(3));
     for (const std::int64_t k : {0, 7, 30}) EXPECT_EQ(film.state(k).x_m, plain.state(k).x_m);
@@ -113,7 +178,7 @@ TEST(FilmPlot, DoesNotChangeTheMotionAndSimulatesItOnce) {
 
 TEST(FilmPlot, IsTheSameInAnyOrderWithAnyMemory) {
     for (const char* const shutter : {"video.shutter=0", "video.shutter=0.5"}) {
-        for (const char* const plot : {"energy", "tip", "phase"}) {
+        for (const char* const plot : {"energy", "tip", "phase", "angle"}) {
             const Scene scene = plotted_scene(plot, {shutter});
             FilmDef forgetful;
             forgetful.motion_budget_bytes = 0;

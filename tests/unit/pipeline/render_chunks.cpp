@@ -31,7 +31,7 @@ method = "exact"
 [style]
 trail_s = 0.5
 [overlay]
-plot = "tip"
+plots = ["tip"]
 [video]
 size = [256, 144]
 fps = 15

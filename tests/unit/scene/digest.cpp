@@ -44,7 +44,7 @@ TEST(Digest, DiffersInTheKeyThatDiffers) {
              {"video.crf=20", "video.crf is not given and was 20"},
              {"world.drag=0.1", "world.drag is 0 and was 0.1"},
              {"style.theme=paper", "style.theme is not given and was \"paper\""},
-             {"overlay.plot=tip", "overlay.plot is \"none\" and was \"tip\""},
+             {"overlay.plots=[\"tip\"]", "overlay.plots is [] and was [\"tip\"]"},
              {"style.color_by=speed", "style.color_by is \"body\" and was \"speed\""},
              {"camera.height=2", "camera.height is not given and was 2"},
              {"world.gravity=1.6", "world.gravity is 9.81 and was 1.6"},

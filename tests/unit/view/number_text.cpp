@@ -74,6 +74,21 @@ TEST(RoundNumbers, AreTheNearestOnes) {
     EXPECT_EQ(round_number_above(0.1).times(3.0), 0.3);
 }
 
+TEST(Logarithm, IsNearTheLibrarys) {
+    for (int i = -30000; i <= 30000; ++i) {
+        const double value = std::exp(0.0231 * i);
+        EXPECT_NEAR(log10_of(value), std::log10(value), 1e-13) << value;  // measured 5.7e-14, half a last bit
+    }
+    for (int exponent = -300; exponent <= 300; ++exponent)
+        EXPECT_NEAR(log10_of(power_of_10(exponent)), exponent, 1e-13);
+    EXPECT_EQ(log10_of(1.0), 0.0);
+}
+
+TEST(NumberTitles, HaveNoPrefixForAngles) {
+    EXPECT_EQ(title_of("angle", "°", 3e-4).text, "angle (10⁻⁶ °)");
+    EXPECT_EQ(title_of("angular velocity", "rad/s", 31.0).text, "angular velocity (rad/s)");
+}
+
 TEST(NumberTitles, HaveAPrefixThatFits) {
     EXPECT_EQ(title_of("energy", "J", 550.0).text, "energy (J)");
     EXPECT_EQ(title_of("energy", "J", 5.5e6).text, "energy (MJ)");

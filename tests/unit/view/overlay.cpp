@@ -88,6 +88,23 @@ TEST(Overlays, KeepTheirPlacesWhateverTheDuration) {
     EXPECT_EQ(list.texts[0].utf8, "t = 0.2500 s");
 }
 
+TEST(Overlays, ShowEnergiesWithoutAnErrorInTheUnitOfTheScene) {
+    OverlayDef def;
+    def.scale_bar = false;
+    def.energy = true;
+    const auto text = [&](double kinetic_j, double potential_j, double scale_j) {
+        Caption caption{1.0, {}, {}};
+        caption.energy = Energy{kinetic_j, potential_j, 0.0};
+        caption.energy_scale_j = scale_j;
+        return drawn(def, caption, 640, 360).texts.back().utf8;
+    };
+    EXPECT_EQ(text(1.2345, -0.5, 9.0), "kinetic 1.23 J, potential −0.50 J");
+    EXPECT_EQ(text(0.0, 0.0, 9.0), "kinetic 0.00 J, potential 0.00 J");
+    EXPECT_EQ(text(1234.5, -0.004, 2e4), "kinetic 1.2 kJ, potential 0.0 kJ");
+    EXPECT_EQ(text(0.5, 0.25, 0.8), "kinetic 0.50 J, potential 0.25 J");
+    EXPECT_EQ(drawn(def, {1.0, {}, {}}, 640, 360).texts.size(), 1U);
+}
+
 TEST(Overlays, HaveAScaleBarOfItsLength) {
     for (const auto& [scale, label, length_px] : {std::tuple{100.0, "1 m", 100},
                                                   {33.0, "2 m", 66},

@@ -32,10 +32,13 @@ DrawList panel_of(const PlotData& data, int width, int height, std::size_t k = k
     list.width = width;
     list.height = height;
     Font font;
-    PlotPanel panel({}, width, height);
-    panel.set_data(data, {}, font);
-    panel.draw_curves(data.curves.front().points[k].time_s, list);
-    panel.draw_axes(list, font);
+    const PlotLayout layout = lay_out_plots(1, width, height);
+    for (const PixelRect& box : layout.panels) {
+        PlotPanel panel({}, width, height, box, layout.em_px);
+        panel.set_data(data, {}, 0, font);
+        panel.draw_curves(data.curves.front().points[k].time_s, list);
+        panel.draw_axes(list, font);
+    }
     return list;
 }
 
@@ -63,7 +66,7 @@ TEST(PlotPanel, KeepsItsTextsApartAndInTheFrame) {
                 const DrawList list = panel_of(waves(size, shift), width, height);
                 const std::vector<PixelRect> boxes = inks(list);
                 shown += boxes.empty() ? 0 : 1;
-                const Room room = room_beside(LivePlot::kEnergy, width, height);
+                const PlotLayout room = lay_out_plots(1, width, height);
                 for (std::size_t i = 0; i < boxes.size(); ++i) {
                     const std::string what =
                         list.texts[i].utf8 + " at " + std::to_string(width) + "x" + std::to_string(height);
@@ -84,7 +87,7 @@ TEST(PlotPanel, KeepsItsTextsApartAndInTheFrame) {
 TEST(PlotPanel, TakesNoRoomWithoutAPlot) {
     for (int width = 100; width <= 700; width += 37) {
         for (int height = 100; height <= 700; height += 37) {
-            const Room room = room_beside(LivePlot::kEnergy, width, height);
+            const PlotLayout room = lay_out_plots(1, width, height);
             const bool is_reserved = room.width_px < width || room.height_px < height;
             PlotData data = waves();
             data.curves.push_back(data.curves.front());
@@ -114,7 +117,7 @@ TEST(PlotPanel, OmitsAxesThatCannotBeDivided) {
 TEST(PlotPanel, HasNoRoomInATinyFrame) {
     for (const auto& [width, height] : {std::pair{128, 128}, {64, 64}, {168, 94}, {1, 1}, {16384, 1}}) {
         EXPECT_TRUE(panel_of(waves(), width, height).texts.empty()) << width << "x" << height;
-        const Room room = room_beside(LivePlot::kTip, width, height);
+        const PlotLayout room = lay_out_plots(1, width, height);
         if (width < 16384) {
             EXPECT_TRUE(room.width_px == width && room.height_px == height);
         }
@@ -156,7 +159,7 @@ TEST(PlotPanel, KeepsTheOutlineOfALongMotion) {
         highest = std::min(highest, list.capsules[curve.first_capsule + c].ay);
     // The single point of 3 is drawn at its place: a quarter of the axis from -1 to 3 above 2.
     const DrawList whole =
-        panel_of({{"t", "s"}, {"x", "m"}, 1000.0, {{"", {{0, 0, -1}, {1, 0, 3}}}}}, 1920, 1080, 1);
+        panel_of({{"t", "s"}, {"x", "m"}, 1000.0, {{.points = {{0, 0, -1}, {1, 0, 3}}}}}, 1920, 1080, 1);
     float top = 1e9F;
     for (std::size_t c = 0; c < whole.layers[1].capsule_count; ++c)
         top = std::min(top, whole.capsules[whole.layers[1].first_capsule + c].ay);
@@ -164,13 +167,16 @@ TEST(PlotPanel, KeepsTheOutlineOfALongMotion) {
 }
 
 /// The colours of the curves, the first in front.
-std::vector<Color> colors_of(const PlotData& data, const std::vector<Color>& body_colors) {
+std::vector<Color> colors_of(const PlotData& data, const std::vector<Color>& body_colors, Theme theme) {
     DrawList list;
     list.width = 640;
     list.height = 360;
     Font font;
-    PlotPanel panel({}, list.width, list.height);
-    panel.set_data(data, body_colors, font);
+    StyleDef style;
+    style.theme = theme;
+    const PlotLayout layout = lay_out_plots(1, list.width, list.height);
+    PlotPanel panel(style, list.width, list.height, layout.panels.at(0), layout.em_px);
+    panel.set_data(data, body_colors, 0, font);
     panel.draw_curves(10.0, list);
     std::vector<Color> colors;
     for (auto layer = list.layers.rbegin(); layer + 1 != list.layers.rend(); ++layer)
@@ -178,26 +184,121 @@ std::vector<Color> colors_of(const PlotData& data, const std::vector<Color>& bod
     return colors;
 }
 
-TEST(PlotPanel, HasTheColorOfItsBodyAndNoOthers) {
+TEST(PlotPanel, HasOneColorPerQuantityAndThoseOfBodies) {
+    using Hue = PlotData::Hue;
     const std::vector<Color> bodies{{0xe6, 0x9f, 0x00}, {0xf0, 0xe4, 0x42}, {0xcc, 0x79, 0xa7}};
     PlotData data = waves();
-    data.body = 1;
-    std::vector<Color> colors = colors_of(data, bodies);
-    ASSERT_EQ(colors.size(), 2U);
+    for (const Hue hue : {Hue::kX, Hue::kY, Hue::kText}) {
+        data.curves.push_back(data.curves.front());
+        data.curves.back().hue = hue;
+    }
+    data.curves[0].hue = Hue::kKinetic;
+    data.curves[1].hue = Hue::kPotential;
+    for (const Theme theme : {Theme::kDark, Theme::kPaper}) {
+        const std::vector<Color> colors = colors_of(data, bodies, theme);
+        ASSERT_EQ(colors.size(), 5U);
+        for (const Color color : colors) EXPECT_EQ(std::count(colors.begin(), colors.end(), color), 1);
+        EXPECT_EQ(colors, colors_of(data, {}, theme));
+    }
+    data.curves[0].body = 1;
+    data.curves[1].body = 0;
+    const std::vector<Color> colors = colors_of(data, bodies, Theme::kDark);
     EXPECT_EQ(colors[0], bodies[1]);
-    EXPECT_EQ(std::count(bodies.begin(), bodies.end(), colors[1]), 0);
-    data.body.reset();
-    data.curves.push_back(data.curves.front());
-    colors = colors_of(data, bodies);
-    ASSERT_EQ(colors.size(), 3U);
-    for (const Color color : colors) {
-        EXPECT_EQ(std::count(bodies.begin(), bodies.end(), color), 0);
-        EXPECT_EQ(std::count(colors.begin(), colors.end(), color), 1);
+    EXPECT_EQ(colors[1], bodies[0]);
+}
+
+TEST(PlotPanel, HasARowPerPowerOf10OfALogarithm) {
+    PlotData data{{"t", "s"}, {"distance", "m", 0.0, "", true}, 1.0, {{}}};
+    for (int i = 0; i <= 8; ++i) data.curves[0].points.push_back({0.125 * i, 0.125 * i, power_of_10(i - 8)});
+    const DrawList list = panel_of(data, 1280, 720, 8);
+    for (const char* const label : {"10⁻⁸", "10⁻⁶", "10⁰"})
+        EXPECT_EQ(std::count_if(list.texts.begin(), list.texts.end(),
+                                [&](const Text& text) { return text.utf8 == label; }),
+                  1)
+            << label;
+    // The powers of 10 are evenly apart: the curve is a straight line.
+    const Layer& curve = list.layers[1];
+    for (std::size_t c = 0; c + 1 < curve.capsule_count; ++c) {
+        const Capsule& capsule = list.capsules[curve.first_capsule + c];
+        EXPECT_NEAR(capsule.uy / capsule.ux,
+                    list.capsules[curve.first_capsule].uy / list.capsules[curve.first_capsule].ux, 1e-4);
+    }
+}
+
+TEST(PlotPanel, LeavesOutNamesThatTakeTooMuchRoom) {
+    PlotData data = waves();
+    data.curves.resize(1);
+    for (int i = 0; i < 15; ++i) {
+        data.curves.push_back(data.curves.front());
+        data.curves.back().name = "rope with a long name " + std::to_string(i);
+    }
+    const DrawList list = panel_of(data, 640, 360);
+    const auto is_name = [](const Text& text) { return text.utf8.find("rope") != std::string::npos; };
+    EXPECT_GT(std::count_if(list.texts.begin(), list.texts.end(), is_name), 0);
+    EXPECT_LT(std::count_if(list.texts.begin(), list.texts.end(), is_name), 15);
+    EXPECT_EQ(list.layers.size(), 17U);  // the grid and the curves
+}
+
+TEST(PlotLayout, PanelsAreApartAndBesideThePicture) {
+    for (const auto& [width, height] : {std::pair{3840, 2160},
+                                        {1280, 720},
+                                        {640, 360},
+                                        {320, 180},
+                                        {1080, 1920},
+                                        {1080, 1080},
+                                        {100, 100}}) {
+        std::size_t shown = 0;
+        for (std::size_t count = 0; count <= 5; ++count) {
+            const PlotLayout layout = lay_out_plots(count, width, height);
+            EXPECT_LE(layout.panels.size(), count);
+            EXPECT_GE(layout.panels.size(), shown) << "at " << width << "x" << height;
+            shown = layout.panels.size();
+            EXPECT_GE(2 * layout.width_px * layout.height_px, width * height);
+            for (std::size_t i = 0; i < layout.panels.size(); ++i) {
+                const PixelRect& panel = layout.panels[i];
+                EXPECT_EQ(panel.intersected({0, 0, width, height}).width(), panel.width());
+                EXPECT_EQ(panel.intersected({0, 0, width, height}).height(), panel.height());
+                EXPECT_TRUE(panel.intersected({0, 0, layout.width_px, layout.height_px}).empty());
+                for (std::size_t k = 0; k < i; ++k) EXPECT_TRUE(panel.intersected(layout.panels[k]).empty());
+            }
+        }
+        EXPECT_EQ(shown, std::min(width, height) < 180   ? 0U
+                         : std::min(width, height) < 360 ? 2U
+                                                         : 5U)
+            << width << "x" << height;
+    }
+}
+
+TEST(PlotLayout, EveryPanelHasRoomForItsPlot) {
+    for (const auto& [width, height] :
+         {std::pair{1280, 720}, {640, 360}, {320, 180}, {1080, 1920}, {1080, 1080}}) {
+        for (std::size_t count = 1; count <= 5; ++count) {
+            OverlayDef def;
+            def.time = def.scale_bar = false;
+            def.plots.resize(count);
+            Overlay overlay(def, {}, width, height, 0.02);
+            PlotData data = waves(123.4, -40.0);
+            data.curves.push_back(data.curves.front());
+            const std::vector<PlotData> all(count, data);
+            overlay.set_plots(all, {});
+            DrawList list;
+            list.width = width;
+            list.height = height;
+            overlay.draw({}, 100.0, list);
+            const auto titles = std::count_if(list.texts.begin(), list.texts.end(),
+                                              [](const Text& text) { return text.utf8 == "energy (J)"; });
+            EXPECT_EQ(titles, lay_out_plots(count, width, height).panels.size()) << width << "x" << height;
+            const std::vector<PixelRect> boxes = inks(list);
+            for (std::size_t i = 0; i < boxes.size(); ++i)
+                for (std::size_t k = 0; k < i; ++k)
+                    EXPECT_TRUE(boxes[i].intersected(boxes[k]).empty())
+                        << list.texts[i].utf8 << " and " << list.texts[k].utf8;
+        }
     }
 }
 
 TEST(PlotPanel, ShowsConstantValuesAsALine) {
-    PlotData data{{"t", "s"}, {"x", "m", 0.5}, 1.0, {{"", {{0, 0, 3.0}, {1, 1, 3.0 + 1e-9}}}}};
+    PlotData data{{"t", "s"}, {"x", "m", 0.5}, 1.0, {{.points = {{0, 0, 3.0}, {1, 1, 3.0 + 1e-9}}}}};
     const auto has = [](const DrawList& list, const std::string& label) {
         return std::any_of(list.texts.begin(), list.texts.end(),
                            [&](const Text& text) { return text.utf8 == label; });
@@ -217,7 +318,7 @@ TEST(PlotPanel, ShowsNothingOfTheScene) {
 
 TEST(PlotPanel, LeavesTheCameraTheRest) {
     OverlayDef def;
-    def.plot = LivePlot::kTip;
+    def.plots = {LivePlot::kTip};
     const Insets beside = Overlay(def, {}, 1280, 720, 0.02).insets();
     EXPECT_EQ(beside.right_panel_px, 461.0);
     EXPECT_EQ(beside.bottom_panel_px, 0.0);
@@ -235,7 +336,7 @@ TEST(PlotPanel, LeavesTheCameraTheRest) {
 }
 
 TEST(PlotPanel, DrawsWhatDoesNotMove) {
-    PlotData data{{"x", "m"}, {"vx", "m/s"}, 0.0, {{"", {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}}}};
+    PlotData data{{"x", "m"}, {"vx", "m/s"}, 0.0, {{.points = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}}}};
     const DrawList list = panel_of(data, 1280, 720, 1);
     EXPECT_GE(list.texts.size(), 4U);
     EXPECT_EQ(list.layers[1].capsule_count, 2U);  // the point, and the dot on it
