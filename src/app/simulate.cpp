@@ -39,17 +39,25 @@ struct SimulateOptions {
     bool dry_run = false;
 };
 
-/// The names of the columns, with units as the files of `report` have them. The time and the positions, in s
-/// and m, have the names that scripts know.
+/// The names of the columns, with units as the files of `report` have them, after the label of a body that
+/// has one. The time and the positions, in s and m, have the names that scripts know.
 std::string csv_header(const System& system, const Columns& columns, CsvStyle style) {
     CsvLine line(style);
     line.add("t");
-    for (std::size_t i = 0; i < system.particle_count(); ++i)
-        for (const char axis : {'x', 'y'}) line.add(fmt::format("{}{}", axis, i));
-    for (std::size_t i = 0; columns.velocities && i < system.particle_count(); ++i)
-        for (const char axis : {'x', 'y'}) line.add(fmt::format("v{}{}_m_s", axis, i));
-    for (std::size_t k = 0; columns.tensions && k < system.link_count(); ++k)
-        line.add(fmt::format("tension{}_n", k));
+    const std::vector<std::string> keys = body_keys(system);
+    std::vector<std::string> labels;  // of particles
+    std::vector<std::string> of_links;
+    for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+        const std::string label = system.bodies[b].label.empty() ? "" : keys[b] + "_";
+        labels.resize(labels.size() + system.bodies[b].particle_count, label);
+        of_links.resize(of_links.size() + system.bodies[b].link_count, label);
+    }
+    for (std::size_t i = 0; i < labels.size(); ++i)
+        for (const char axis : {'x', 'y'}) line.add(fmt::format("{}{}{}", labels[i], axis, i));
+    for (std::size_t i = 0; columns.velocities && i < labels.size(); ++i)
+        for (const char axis : {'x', 'y'}) line.add(fmt::format("{}v{}{}_m_s", labels[i], axis, i));
+    for (std::size_t k = 0; columns.tensions && k < of_links.size(); ++k)
+        line.add(fmt::format("{}tension{}_n", of_links[k], k));
     if (columns.energy) line.add("energy_change_j");
     if (columns.diagnostics)
         for (const char* const name : {"energy_error", "strain", "pin_force_n", "largest_tension_n"})
@@ -287,7 +295,8 @@ void add_simulate(CLI::App& app, Action& action) {
     command.add_option(
         "-o,--output", options.output,
         "CSV or .npz file, or - for CSV on standard output; none: figures only. The first line "
-        "of CSV names the columns: t in s, x0, y0, ... in m; the arrays of .npz are times, "
+        "of CSV names the columns: t in s, x0, y0, ... in m, after the label of a rope or net that has one; "
+        "the arrays of .npz are times, "
         "positions, ...");
     options.scene.add_timing(command, "rows per second");
     command.add_flag("--velocity", options.columns.velocities,

@@ -16,13 +16,6 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// "rope_2"
-std::string key_of(const System& system, std::size_t body) {
-    std::string key = body_name(system, body);
-    std::replace(key.begin(), key.end(), ' ', '_');
-    return key;
-}
-
 std::vector<double> times_between_frames_s(const Scene& scene) {
     constexpr std::int64_t kMaxStates = 4000;
     constexpr std::int64_t kMaxPerFrame = 8;
@@ -78,8 +71,9 @@ class Reader {
         std::vector<std::string> tip{"t_s"};
         std::vector<std::string> tension{"t_s"};
         std::vector<std::string> strain{"t_s", "largest"};
+        const std::vector<std::string> keys = body_keys(system_);
         for (const BodyCurves& body : motion_.bodies) {
-            const std::string key = key_of(system_, body.followed.body);
+            const std::string& key = keys[body.followed.body];
             for (const char* what : {"x_m", "y_m", "vx_m_s", "vy_m_s"}) tip.push_back(key + "_" + what);
             if (body.followed.pin) {
                 tip.push_back(key + "_angle_rad");

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
+#include <set>
 #include <vector>
 
 #include "corda/sim/defs.hpp"
@@ -288,6 +290,20 @@ std::string body_name(const System& system, std::size_t body) {
     if (!system.bodies[body].label.empty()) return system.bodies[body].label;
     const std::size_t ropes = rope_count(system);
     return body < ropes ? "rope " + std::to_string(body) : "net " + std::to_string(body - ropes);
+}
+
+std::vector<std::string> body_keys(const System& system) {
+    std::vector<std::string> keys;
+    std::set<std::string> taken;
+    std::map<std::string, int> repeats;
+    for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+        std::string name = body_name(system, b);
+        std::replace(name.begin(), name.end(), ' ', '_');
+        std::string key = name;
+        while (!taken.insert(key).second) key = name + "_" + std::to_string(++repeats[name] + 1);
+        keys.push_back(key);
+    }
+    return keys;
 }
 
 std::vector<Bar> rigid_bars(const System& system) {

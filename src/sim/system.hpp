@@ -101,6 +101,9 @@ struct LinkRange {
 /// Name of a body: "rope 2" or "net 0", counted within its kind.
 [[nodiscard]] std::string body_name(const System& system, std::size_t body);
 
+/// The names of all bodies for columns of tables, distinct: "rope_2", "8_kg", "8_kg_2".
+[[nodiscard]] std::vector<std::string> body_keys(const System& system);
+
 /// The bars of bodies without compliance, in the system's order.
 [[nodiscard]] std::vector<Bar> rigid_bars(const System& system);
 

@@ -43,6 +43,15 @@ TEST(MotionSummary, HasTheEnergyAndTheTensionOfAPendulum) {
     EXPECT_FALSE(scene.motion.failure);
 }
 
+TEST(MotionSummary, NamesColumnsByDistinctLabels) {
+    const std::string rope = "[[rope]]\nhang = { links = 1, length = 2.0 }\n";
+    const std::string toml = "[world]\nduration = 0.1\n" + rope + "label = \"8 kg\"\n" + rope +
+                             "label = \"8 kg\"\n" + rope + "label = \"8 kg 2\"\n" + rope;
+    ReadScene scene(toml);
+    for (const char* const key : {"8_kg", "8_kg_2", "8_kg_2_2", "rope_3"})
+        EXPECT_EQ(scene.column("tip.csv", std::string(key) + "_x_m").size(), 7U) << key;
+}
+
 TEST(MotionSummary, CountsTheAngleFromStraightDown) {
     ReadScene scene(pendulum_toml());
     const auto angle = scene.column("tip.csv", "rope_0_angle_rad");
