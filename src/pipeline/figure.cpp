@@ -123,7 +123,7 @@ Color gap_color(const view::Look& look) {
 
 /// "t = 0.25 s" for each time, all with the same number of digits: enough to be exact, or at least to be
 /// distinct if that takes many digits.
-std::vector<std::string> captions_of(const std::vector<double>& times_s) {
+std::vector<std::string> captions_of(const std::vector<double>& times_s, Language language) {
     constexpr int kFewDigits = 3;
     constexpr int kMaxDigits = 9;
     std::vector<std::string> captions;
@@ -133,7 +133,7 @@ std::vector<std::string> captions_of(const std::vector<double>& times_s) {
         bool is_exact = true;
         steps_1_s *= 10.0;
         for (const double time_s : times_s) {
-            captions.push_back(view::time_label(fmt::format("{:.{}f}", time_s, digits)));
+            captions.push_back(view::time_label(fmt::format("{:.{}f}", time_s, digits), language));
             is_exact &= std::abs(std::round(time_s * steps_1_s) / steps_1_s - time_s) < 1e-9;
         }
         const bool are_apart = std::adjacent_find(captions.begin(), captions.end()) == captions.end();
@@ -153,7 +153,7 @@ view::DrawList list_captions(const Film& film, const FigureDef& def) {
     list.height = def.height_px;
     list.ground = {gap, gap};
     view::Font font;
-    const std::vector<std::string> captions = captions_of(def.times_s);
+    const std::vector<std::string> captions = captions_of(def.times_s, film.scene().overlay.language);
     int size_px = sheet.text_px();
     const auto widest_px = [&] {
         int widest = 0;

@@ -213,8 +213,12 @@ struct Film::Impl {
     view::Caption caption_of(const DrawContext& by, const view::Camera& map) const {
         std::optional<double> bound_px;
         if (plan.error_bound_m) bound_px = *plan.error_bound_m * map.pixels_per_metre();
-        view::Caption caption{by.state.time_s, by.figures.energy_error, method_caption(plan, bound_px), {},
-                              by.energy,       energy_scale_j};
+        view::Caption caption{by.state.time_s,
+                              by.figures.energy_error,
+                              method_caption(plan, bound_px, scene.overlay.language),
+                              {},
+                              by.energy,
+                              energy_scale_j};
         by.renderer.locate_labels(by.state, map, caption);
         return caption;
     }

@@ -5,12 +5,16 @@
 #include <numbers>
 #include <numeric>
 #include <string>
+#include <string_view>
 #include <variant>
+
+#include <fmt/format.h>
 
 #include "corda/core/timeline.hpp"
 #include "corda/pipeline/tracked_particle.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/system.hpp"
+#include "corda/view/words.hpp"
 
 namespace corda::pipeline {
 namespace {
@@ -31,7 +35,8 @@ constexpr std::size_t kMaxCurves = 16;
 
 /// What the plots show of a scene.
 struct Subject {
-    Subject(const Scene& scene, const System& of) : system(of), end_s(scene.world.duration_s) {
+    Subject(const Scene& scene, const System& of)
+        : system(of), language(scene.overlay.language), end_s(scene.world.duration_s) {
         MotionBounds start;
         for (std::size_t i = 0; i < of.particle_count(); ++i) start.include(of.x_m[i], of.y_m[i]);
         const Vec2 extent_m = start.max_m() - start.min_m();
@@ -49,12 +54,19 @@ struct Subject {
     [[nodiscard]] std::vector<PlotData::Curve> curves() const {
         std::vector<PlotData::Curve> curves;
         for (const TrackedParticle& one : turning)
-            curves.push_back(
-                {.name = system.bodies.size() > 1 ? body_name(system, one.body) : "", .body = one.body});
+            curves.push_back({.name = system.bodies.size() > 1 ? name_of(one.body) : "", .body = one.body});
         return curves;
     }
 
+    [[nodiscard]] std::string name_of(std::size_t body) const {
+        return view::translated_name(system, body, language);
+    }
+    [[nodiscard]] std::string word(std::string_view english) const {
+        return view::translated(english, language);
+    }
+
     const System& system;
+    Language language;
     double end_s;
     double size_m = 0.0;
     double mass_kg = 0.0;
@@ -87,9 +99,11 @@ const Kind kKinds[] = {
          using Hue = PlotData::Hue;
          const double speed_m_s = subject.size_m / subject.end_s;
          return {kTime,
-                 {"energy", "J", kStill * subject.mass_kg * speed_m_s * speed_m_s},
+                 {subject.word("energy"), "J", kStill * subject.mass_kg * speed_m_s * speed_m_s},
                  subject.end_s,
-                 {{"kinetic", Hue::kKinetic}, {"potential", Hue::kPotential}, {"total", Hue::kText}}};
+                 {{subject.word("kinetic"), Hue::kKinetic},
+                  {subject.word("potential"), Hue::kPotential},
+                  {subject.word("total"), Hue::kText}}};
      },
      [](const Subject&, const Sample& sample) -> std::vector<CurvePoint> {
          const double potential_j = sample.energy.potential_j();
@@ -99,7 +113,7 @@ const Kind kKinds[] = {
      }},
     {true,
      [](const Subject& subject) -> PlotData {
-         return {kTime, {"angle", "°", kStill, "φ"}, subject.end_s, subject.curves()};
+         return {kTime, {subject.word("angle"), "°", kStill, "φ"}, subject.end_s, subject.curves()};
      },
      [](const Subject&, const Sample& sample) {
          std::vector<CurvePoint> values;
@@ -109,17 +123,17 @@ const Kind kKinds[] = {
     {true,
      [](const Subject& subject) -> PlotData {
          const double least = kStill / kDegrees;
-         return {{"angle", "rad", least, "φ"},
-                 {"angular velocity", "rad/s", least / subject.end_s, "ω"},
+         return {{subject.word("angle"), "rad", least, "φ"},
+                 {subject.word("angular velocity"), "rad/s", least / subject.end_s, "ω"},
                  0.0,
                  subject.curves()};
      },
      [](const Subject&, const Sample& sample) { return sample.turns; }},
     {false,
      [](const Subject& subject) -> PlotData {
-         const std::string name = body_name(subject.system, 0) + " – " + body_name(subject.system, 1);
+         const std::string name = subject.name_of(0) + " – " + subject.name_of(1);
          return {kTime,
-                 {"distance of the tips", "m", 0.0, "distance", true},
+                 {subject.word("distance of the tips"), "m", 0.0, subject.word("distance"), true},
                  subject.end_s,
                  {{subject.system.bodies.size() > 2 ? name : ""}}};
      },
@@ -132,13 +146,14 @@ const Kind kKinds[] = {
     {false,
      [](const Subject& subject) -> PlotData {
          const std::size_t tip = tip_of(subject.system);
-         const std::string name = subject.system.bodies.size() > 1
-                                      ? " of " + body_name(subject.system, body_of(subject.system, tip))
-                                      : "";
+         const std::string x = subject.system.bodies.size() > 1
+                                   ? fmt::format(fmt::runtime(subject.word("x of {}")),
+                                                 subject.name_of(body_of(subject.system, tip)))
+                                   : "x";
          return {kTime,
-                 {"position", "m", kStill * subject.size_m},
+                 {subject.word("position"), "m", kStill * subject.size_m},
                  subject.end_s,
-                 {{"x" + name, PlotData::Hue::kX}, {"y", PlotData::Hue::kY}}};
+                 {{x, PlotData::Hue::kX}, {"y", PlotData::Hue::kY}}};
      },
      [](const Subject& subject, const Sample& sample) -> std::vector<CurvePoint> {
          const std::size_t tip = tip_of(subject.system);
@@ -188,6 +203,7 @@ std::vector<PlotData> LivePlotData::read(const std::vector<MethodDef>& methods, 
     const std::vector<LivePlot>& plots = scene_->overlay.plots;
     std::vector<PlotData> all;
     for (const LivePlot plot : plots) all.push_back(kind_of(plot).axes(subject));
+    for (PlotData& data : all) data.language = subject.language;
     const FrameRate fps = scene_->video.scene_rate();
     const Timeline timeline(fps, fps.last_frame_within(scene_->world.duration_s), times_s());
     const std::size_t stride = timeline.size() / kMaxSamples + 1;

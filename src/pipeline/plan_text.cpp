@@ -14,6 +14,7 @@
 #include "corda/sim/forces/forces.hpp"
 #include "corda/sim/solver.hpp"
 #include "corda/view/number_text.hpp"
+#include "corda/view/words.hpp"
 
 namespace corda {
 namespace {
@@ -224,13 +225,16 @@ std::string method_names(const Plan& plan) {
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string method_caption(const Plan& plan, const std::optional<double>& error_bound_px) {
+std::string method_caption(const Plan& plan, const std::optional<double>& error_bound_px, Language language) {
     std::string names = method_names(plan);
     if (!error_bound_px) return names;
     constexpr double kSmallest = 1e-3;  // with decimals
-    if (*error_bound_px < kSmallest)
-        return fmt::format("{}, error below {} px", names, view::power_text(*error_bound_px));
-    return fmt::format("{}, error below {:g} px", names, view::rounded_up(*error_bound_px));
+    const std::string bound = *error_bound_px < kSmallest
+                                  ? view::power_text(*error_bound_px)
+                                  : fmt::format("{:g}", view::rounded_up(*error_bound_px));
+    return names + ", " +
+           fmt::format(fmt::runtime(view::translated("error below {} px", language)),
+                       view::localized(bound, language));
 }
 
 Error pipeline::explained(const Refusal& refusal, const std::string& source) {

@@ -10,6 +10,7 @@
 #include "corda/pipeline/film.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/sim/system.hpp"
+#include "corda/view/defs.hpp"
 
 namespace corda {
 
@@ -42,7 +43,8 @@ struct MethodGroup {
 [[nodiscard]] std::string method_names(const Plan& plan);
 
 /// The methods' names with the bound of the displayed error: "exact, error below 0.031 px".
-[[nodiscard]] std::string method_caption(const Plan& plan, const std::optional<double>& error_bound_px);
+[[nodiscard]] std::string method_caption(const Plan& plan, const std::optional<double>& error_bound_px,
+                                         Language language);
 
 /// The terms of the model, one per line. Omits terms that the scene does not ask for.
 [[nodiscard]] std::vector<std::string> modelled_terms(const Scene& scene, const Plan& plan);

@@ -183,6 +183,7 @@ class Drawing {
                    1.0,   {}};
         area_.y = {y.low, y.high, area_.box.y1 - 1, area_.box.y0, plot_.log_y, printable(plot_.y_title),
                    1.0,   {}};
+        area_.x.language = area_.y.language = plot_.language;
         const int y_labels =
             std::clamp(rounded(area_.box.height() / (kPerLabel * area_.em_px)), kMinLabels, kMaxLabels);
         if (!plot_.has_equal_scales) {

@@ -10,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include "corda/view/defs.hpp"
+
 namespace corda::report {
 
 /// Pixels per inch of figures in print.
@@ -93,12 +95,13 @@ struct Plot {
     bool log_x = true;
     bool log_y = true;
     std::vector<Series> series;
-    std::string context_name = {};  ///< of all lines that are context
-    std::string caption = {};       ///< stands below it on the page, with a number; may be empty
-    std::string data = {};          ///< name of the file with its numbers, for the page; empty: none
-    bool has_markers = true;        ///< false: lines without a marker at each point
-    bool has_equal_scales = false;  ///< a unit is as long along x as along y: for paths
-    double height_per_width = 0.6;  ///< of the box, unless it has equal scales
+    std::string context_name = {};           ///< of all lines that are context
+    std::string caption = {};                ///< stands below it on the page, with a number; may be empty
+    std::string data = {};                   ///< name of the file with its numbers, for the page; empty: none
+    bool has_markers = true;                 ///< false: lines without a marker at each point
+    bool has_equal_scales = false;           ///< a unit is as long along x as along y: for paths
+    double height_per_width = 0.6;           ///< of the box, unless it has equal scales
+    Language language = Language::kEnglish;  ///< of the decimal sign of its labels
 };
 
 /// A drawing that is made elsewhere.

@@ -155,6 +155,8 @@ std::vector<Key> overlay_keys() {
          "over time: energies, angle of each rope, distance of the tips of ropes 0 and 1, x and y of the "
          "first "
          "tip; phase: angular velocity against angle"},
+        {"overlay", "language", one_of({"en", "de", "pt", "es", "fr"}), "", field(&OverlayDef::language),
+         "the language of words and the decimal sign", "in plots and reports too"},
         {"overlay", "texts", of(Kind::kTables), "", none(),
          "texts = [{ text = \"released\", at = [0.5, 0.1], from = 0.0, to = 1.5 }]",
          "texts in the picture, for a time each"},

@@ -94,6 +94,9 @@ struct BodyStyleDef {
 /// logarithmic axis; the position of the first tip over time.
 enum class LivePlot { kEnergy, kAngle, kPhase, kDivergence, kTip };
 
+/// The language of words and the decimal sign in pictures and reports.
+enum class Language { kEnglish, kGerman, kPortuguese, kSpanish, kFrench };
+
 /// A text in the picture.
 struct OverlayTextDef {
     std::string text;            ///< as OverlayDef::title
@@ -106,12 +109,13 @@ struct OverlayTextDef {
 struct OverlayDef {
     /// The time; default: on an opaque ground, if the shorter side has at least 160 px.
     std::optional<bool> time;
-    std::optional<bool> scale_bar;      ///< a length of 1, 2 or 5 times a power of 10; default: as `time`
-    std::optional<bool> legend;         ///< the scale of style.color_by; default: as `time`
-    std::string title;                  ///< UTF-8, of characters that DejaVu Sans has; empty: none
-    bool energy = false;                ///< the error of the energy (Figures::energy_error)
-    bool method = false;                ///< the methods, and the bound of the displayed error
-    std::vector<LivePlot> plots;        ///< each once; a frame without room for all shows the first ones
+    std::optional<bool> scale_bar;  ///< a length of 1, 2 or 5 times a power of 10; default: as `time`
+    std::optional<bool> legend;     ///< the scale of style.color_by; default: as `time`
+    std::string title;              ///< UTF-8, of characters that DejaVu Sans has; empty: none
+    bool energy = false;            ///< the error of the energy (Figures::energy_error)
+    bool method = false;            ///< the methods, and the bound of the displayed error
+    std::vector<LivePlot> plots;    ///< each once; a frame without room for all shows the first ones
+    Language language = Language::kEnglish;
     std::vector<OverlayTextDef> texts;  ///< not in a picture of several poses
     /// 4 .. 400: the size of the text at the edges; default: grows with the shorter side
     std::optional<double> text_px;

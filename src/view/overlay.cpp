@@ -11,6 +11,7 @@
 #include "corda/view/colors.hpp"
 #include "corda/view/font.hpp"
 #include "corda/view/number_text.hpp"
+#include "corda/view/words.hpp"
 
 namespace corda::view {
 namespace {
@@ -45,28 +46,32 @@ std::size_t end_of_character(std::string_view utf8, std::size_t i) {
 }
 
 /// "kinetic 1.25 J, potential −0.75 J", with a unit and decimals that depend on the scale alone.
-std::string energy_text(const Energy& energy, double scale_j) {
+std::string energy_text(const Energy& energy, double scale_j, Language language) {
     const NumberTitle title = title_of("", "J", scale_j);  // " (kJ)"
     const double scale = scale_j / title.unit;
     const int decimals = scale >= 100.0 ? 0 : scale >= 10.0 ? 1 : 2;
     const auto text = [&](double energy_j) {
         const std::string digits = fmt::format("{:.{}f}", std::abs(energy_j) / title.unit, decimals);
         const bool is_negative = energy_j < 0.0 && digits.find_first_of("123456789") != std::string::npos;
-        return (is_negative ? "−" : "") + digits + " " + title.text.substr(2, title.text.size() - 3);
+        return (is_negative ? "−" : "") + localized(digits, language) + " " +
+               title.text.substr(2, title.text.size() - 3);
     };
-    return "kinetic " + text(energy.kinetic_j) + ", potential " + text(energy.potential_j());
+    return fmt::format("{} {}, {} {}", translated("kinetic", language), text(energy.kinetic_j),
+                       translated("potential", language), text(energy.potential_j()));
 }
 
 /// A text at the lower edge, to the right of the time.
 struct BottomText {
     bool (*is_shown)(const OverlayDef& def);
-    std::string (*text)(const Caption& caption, double interval_s);
+    std::string (*text)(const Caption& caption, Language language);
 };
 constexpr BottomText kBottomTexts[] = {
     {[](const OverlayDef& def) { return def.energy; },
-     [](const Caption& caption, double /*interval_s*/) {
-         if (caption.energy_error) return "energy error " + power_text(*caption.energy_error);
-         return caption.energy ? energy_text(*caption.energy, caption.energy_scale_j) : "";
+     [](const Caption& caption, Language language) {
+         if (caption.energy_error)
+             return localized(translated("energy error", language) + " " + power_text(*caption.energy_error),
+                              language);
+         return caption.energy ? energy_text(*caption.energy, caption.energy_scale_j, language) : "";
      }},
 };
 
@@ -79,8 +84,8 @@ void locate(std::span<const BodyLabel> labels, const State& state, const Camera&
     for (const BodyLabel& label : labels) caption.labels.emplace_back(at(label.particle), at(label.from));
 }
 
-std::string time_label(const std::string& digits) {
-    return "t = " + digits + " s";
+std::string time_label(const std::string& digits, Language language) {
+    return "t = " + localized(digits, language) + " s";
 }
 
 Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int height, double interval_s)
@@ -221,7 +226,7 @@ void Overlay::draw_label(const BodyLabel& label, PixelPoint at, PixelPoint from,
 }
 
 std::string Overlay::time_text(double time_s) const {
-    return time_label(fmt::format("{:.{}f}", time_s, decimals_));
+    return time_label(fmt::format("{:.{}f}", time_s, decimals_), def_.language);
 }
 
 void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& list) {
@@ -235,7 +240,7 @@ void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& li
     if (scale_bar_) right_px = draw_scale_bar(pixels_per_metre, left_px, list);
     for (const BottomText& item : kBottomTexts) {
         if (item.is_shown(def_) && caption.time_s)
-            left_px = write_bottom(item.text(caption, interval_s_), left_px, right_px, list);
+            left_px = write_bottom(item.text(caption, def_.language), left_px, right_px, list);
     }
     const int end_px = legend_ && scale_ ? draw_legend(list) : width_ - edge_px_;
     const int title_size_px = title_lines_.size() == 1 ? fitting_title_px(end_px) : title_px();
@@ -279,7 +284,7 @@ int Overlay::draw_scale_bar(double pixels_per_metre, int begin_px, DrawList& lis
     if (!std::isnormal(longest_m)) return right_px;
     const RoundNumber number = round_number_below(longest_m);
     const int length_px = std::max(1, rounded(number.value() * pixels_per_metre));
-    const std::string text = length_text(number.digit, number.exponent);
+    const std::string text = localized(length_text(number.digit, number.exponent), def_.language);
     const int gap_px = rounded(kGap * em_px_);
     const int text_px = right_px - length_px - gap_px - font_.width_px(text, em_px_);
     if (text_px < begin_px) return right_px;
@@ -296,7 +301,10 @@ int Overlay::draw_scale_bar(double pixels_per_metre, int begin_px, DrawList& lis
 
 int Overlay::draw_legend(DrawList& list) {
     const NumberTitle title = title_of(*scale_);
-    const auto number = [&](double value) { return display_number(value / title.unit); };
+    const std::string name = translated(title.text, def_.language);
+    const auto number = [&](double value) {
+        return localized(display_number(value / title.unit), def_.language);
+    };
     const std::string first = (scale_->is_cut && scale_->low < 0.0 ? "≤ " : "") + number(scale_->low);
     const std::string last = (scale_->is_cut ? "≥ " : "") + number(scale_->high);
     const auto half_px = [&](const std::string& text) { return font_.width_px(text, em_px_) / 2; };
@@ -304,10 +312,10 @@ int Overlay::draw_legend(DrawList& list) {
     const int bar_end_px = width_ - edge_px_ - half_px(last);
     const int bar_px0 = bar_end_px - bar_px;
     const int title_end_px = bar_px0 - rounded(kGap * em_px_);
-    const int title_x_px = title_end_px - font_.width_px(title.text, em_px_);
+    const int title_x_px = title_end_px - font_.width_px(name, em_px_);
     if (title_x_px < edge_px_) return width_ - edge_px_;
     const int baseline_px = edge_px_ + rounded(kAscent * em_px_);
-    font_.write({title_x_px, baseline_px, em_px_, color_, title.text}, list);
+    font_.write({title_x_px, baseline_px, em_px_, color_, name}, list);
     const int height_px = rounded(kLegendHeight * em_px_);
     const int top_px = baseline_px - (rounded(kAscent * em_px_) + height_px) / 2;
     draw_gradient({bar_px0, top_px, bar_end_px, top_px + height_px}, list);

@@ -109,6 +109,6 @@ class Overlay {
 };
 
 /// "t = 1.20 s"
-[[nodiscard]] std::string time_label(const std::string& digits);
+[[nodiscard]] std::string time_label(const std::string& digits, Language language);
 
 }  // namespace corda::view

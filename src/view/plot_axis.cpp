@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "corda/view/number_text.hpp"
+#include "corda/view/words.hpp"
 
 namespace corda::view {
 namespace {
@@ -81,9 +82,9 @@ void PlotAxis::set_labels(int most) {
     for (std::int64_t k = first; k <= last; ++k) {
         const double value = step.times(static_cast<double>(k));
         const double at_px = low_px + (value - low) / (high - low) * (high_px - low_px);
-        labels.push_back(
-            {is_log ? power_of_10_text(static_cast<int>(value)) : display_number(value / unit, digits),
-             rounded(at_px)});
+        labels.push_back({is_log ? power_of_10_text(static_cast<int>(value))
+                                 : localized(display_number(value / unit, digits), language),
+                          rounded(at_px)});
     }
 }
 

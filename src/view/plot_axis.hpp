@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "corda/view/defs.hpp"
 #include "corda/view/draw_list.hpp"
 #include "corda/view/font.hpp"
 
@@ -48,6 +49,7 @@ struct PlotAxis {
     std::string title = {};
     double unit = 1.0;  ///< divisor of the labels' numbers
     std::vector<Label> labels = {};
+    Language language = Language::kEnglish;  ///< of the decimal sign
 
     [[nodiscard]] double px(double value) const;
     /// Moves the ends outwards to values that have labels, at most `most_steps` steps apart.

@@ -128,6 +128,7 @@ void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_color
     const bool is_over_time = data.end_s > 0.0;
     const auto start_axis = [&](const PlotData::AxisName& name, const ValueRange& range) {
         PlotAxis axis;
+        axis.language = data.language;
         axis.is_log = name.is_log;
         axis.low = name.is_log ? log10_of(range.low) : range.low;
         axis.high = name.is_log ? log10_of(range.high) : range.high;

@@ -44,7 +44,8 @@ struct PlotData {
     AxisName y;
     /// End of the x axis if x is the time; 0 otherwise.
     double end_s = 0.0;
-    std::vector<Curve> curves;  ///< at least one, the first in front
+    std::vector<Curve> curves;               ///< at least one, the first in front
+    Language language = Language::kEnglish;  ///< that all texts are in
 };
 
 /// The parts of a frame: the upper left one for the picture, and the panels of the live plots, in a column to

@@ -104,7 +104,10 @@ inline view::DrawList draw_list_of(Film& film, double time_s) {
     const State state = film.state_at(time_s);
     add_points(film, state, 0.0, trails);
     const view::Caption caption{
-        time_s, film.figures().energy_error, method_caption(film.plan(), film.error_bound_px()), {}};
+        time_s,
+        film.figures().energy_error,
+        method_caption(film.plan(), film.error_bound_px(), film.scene().overlay.language),
+        {}};
     return draw_list_of(film.scene(), film.system(), film.camera_at(time_s), state, motion, caption, trails,
                         histogram, plotted_of(film));
 }

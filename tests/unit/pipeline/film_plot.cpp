@@ -10,6 +10,7 @@
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "corda/pipeline/live_plot_data.hpp"
+#include "corda/pipeline/plan_text.hpp"
 #include "support/draw_list_of.hpp"
 #include "support/failure.hpp"
 #include "support/image_matchers.hpp"
@@ -144,6 +145,29 @@ plots = ["divergence", "angle", "tip"]
     EXPECT_EQ(plots[1].curves[0].name, "A");
     EXPECT_EQ(plots[1].curves[2].name, "rope 2");
     EXPECT_EQ(plots[2].curves[0].name, "x of A");
+}
+
+TEST(FilmPlot, SpeaksTheLanguageOfTheSceneButKeepsLabels) {
+    const Scene scene = parse_scene(R"(schema = 1
+[world]
+duration = 0.1
+[[rope]]
+label = "rope 7"
+hang = { links = 1, length = 2.0, angle_deg = 30.0 }
+[[rope]]
+hang = { links = 1, length = 2.0, angle_deg = 31.0 }
+[overlay]
+language = "fr"
+plots = ["phase", "tip"]
+)",
+                                    "plot.toml");
+    Film film(scene);
+    const std::vector<view::PlotData> plots = test::plotted_of(film);
+    EXPECT_EQ(plots[0].y.text, "vitesse angulaire");
+    EXPECT_EQ(plots[0].curves[0].name, "rope 7");
+    EXPECT_EQ(plots[0].curves[1].name, "corde 1");
+    EXPECT_EQ(plots[1].curves[0].name, "x de rope 7");
+    EXPECT_EQ(method_caption(film.plan(), 0.031, Language::kFrench), "exact, erreur inférieure à 0,031 px");
 }
 
 TEST(FilmPlot, RefusesWhatTheSceneDoesNotHave) {

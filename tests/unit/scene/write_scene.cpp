@@ -51,7 +51,8 @@ TEST(WriteScene, EveryKeyComesBack) {
                  "[[solver.bodies]]\nnets = [0]\nmethod = \"relaxation\"\nforce = [0, -1]\n"
                  "[video]\nfps = \"30000/1001\"\nsize = [64, 36]\ncodec = \"h265\"\ncrf = 20\npix = \"444\"\n"
                  "[style]\nbackground = [\"#102030\", \"#405060\"]\npalette = [\"red\"]\ntheme = \"paper\"\n"
-                 "[overlay]\ntitle = 'a \"quoted\" \\ title: Ä'\ntime = false\nplot = \"tip\"\n"
+                 "[overlay]\ntitle = 'a \"quoted\" \\ title: Ä'\ntime = false\nplots = [\"tip\", "
+                 "\"energy\"]\nlanguage = \"de\"\n"
                  "[camera]\ncenter = [0.1, -0.3]\nheight = 3.3\nmargin = 0.1\n"),
          }) {
         SCOPED_TRACE(toml);
