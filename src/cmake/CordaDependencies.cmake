@@ -24,6 +24,8 @@ corda_find_package(PNG libpng-dev)
 corda_find_package(ZLIB zlib1g-dev)
 corda_find_package(Eigen3 libeigen3-dev 3.4)
 corda_find_pkgconfig(FREETYPE libfreetype-dev freetype2)
+# Linked, because cairo loads it in any case; it reads its configuration when it is first asked for a font.
+corda_find_pkgconfig(FONTCONFIG libfontconfig-dev fontconfig)
 corda_find_pkgconfig(TOMLPLUSPLUS libtomlplusplus-dev tomlplusplus)
 corda_find_pkgconfig(EPOXY "libepoxy-dev libegl-dev" epoxy egl)
 corda_find_pkgconfig(CAIRO libcairo2-dev cairo-pdf)

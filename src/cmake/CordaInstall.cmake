@@ -14,7 +14,8 @@ corda_add_public_library(
         sim/defs.hpp sim/simulation.hpp sim/system.hpp
         view/defs.hpp
     PRIVATE Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json PNG::PNG ZLIB::ZLIB
-        PkgConfig::AVUTIL PkgConfig::CAIRO PkgConfig::EPOXY PkgConfig::FREETYPE PkgConfig::WEBP PkgConfig::TOMLPLUSPLUS ${CORDA_X264_TARGET}
+        PkgConfig::AVUTIL PkgConfig::CAIRO PkgConfig::EPOXY PkgConfig::FONTCONFIG PkgConfig::FREETYPE PkgConfig::WEBP
+        PkgConfig::TOMLPLUSPLUS ${CORDA_X264_TARGET}
         ${CMAKE_DL_LIBS})
 
 install(TARGETS corda_library EXPORT corda_targets

@@ -27,6 +27,7 @@ packages=(
     libeigen3-dev           # sparse factorisation for nets of bars
     libcairo2-dev           # stills as PDF
     libfreetype-dev         # glyphs of text in pictures
+    libfontconfig-dev       # finds a font for characters that theirs lacks
     fonts-dejavu-core       # their font, which becomes part of the program
     libpng-dev              # stills and golden images, with their sRGB, pHYs and text chunks
     libcli11-dev            # the command line
@@ -48,6 +49,7 @@ if [[ "${1:-build}" != build ]]; then
         libgmock-dev        # its matchers
         libbenchmark-dev    # measured speed
         libswscale-dev      # shows pictures as a player does, for their measured quality
+        fonts-wqy-microhei  # a font with Chinese characters
         clang-format        # the style check
         clang               # the tests under the sanitizers, by a second compiler
         libclang-rt-dev     # its sanitizers

@@ -8,6 +8,7 @@
 #include "corda/report/writers.hpp"
 #include "corda/view/colors.hpp"
 #include "corda/view/number_text.hpp"
+#include "corda/view/words.hpp"
 
 namespace corda::figures {
 namespace {
@@ -79,7 +80,8 @@ std::vector<Curve> curves_of(const Scene& scene, const System& system, const Mot
     const std::vector<std::string> colors = curve_colors(scene, bodies);
     std::vector<Curve> curves;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const std::string name = bodies.size() == 1 ? "" : body_name(system, bodies[i]);
+        const std::string name =
+            bodies.size() == 1 ? "" : view::translated_name(system, bodies[i], scene.overlay.language);
         curves.push_back({name, motion.bodies[i].*curve, colors[i]});
     }
     return curves;

@@ -68,14 +68,9 @@ std::vector<report::Chapter> list_chapters(Film& film, const MotionSummary& moti
     return chapters;
 }
 
-/// Translates headings, titles of figures and of their axes, and names that are not labels of bodies.
-void translate(const Film& film, std::vector<report::Chapter>& chapters) {
-    const Language language = film.scene().overlay.language;
-    const auto is_label = [&](const std::string& name) {
-        const auto& bodies = film.system().bodies;
-        return std::any_of(bodies.begin(), bodies.end(),
-                           [&](const Body& body) { return body.label == name; });
-    };
+/// Translates headings, titles of figures and of their axes, and names of curves that are not those of
+/// bodies.
+void translate(Language language, std::vector<report::Chapter>& chapters) {
     const auto into = [&](std::string& text) { text = view::translated(text, language); };
     for (report::Chapter& chapter : chapters) {
         into(chapter.title);
@@ -83,26 +78,24 @@ void translate(const Film& film, std::vector<report::Chapter>& chapters) {
             plot.language = language;
             for (std::string* const text : {&plot.title, &plot.x_title, &plot.y_title}) into(*text);
             for (report::Series& series : plot.series)
-                if (!is_label(series.name)) into(series.name);
+                if (plot.id == "energy") into(series.name);
         }
     }
 }
 
 report::Report page_of(const Film& film, std::vector<report::Chapter> chapters) {
     const Scene& scene = film.scene();
-    const auto word = [&](std::string_view text) { return view::translated(text, scene.overlay.language); };
     report::Report page;
     page.title = scene.overlay.title.empty()
-                     ? fmt::format(fmt::runtime(word("Report of {}")), printable(scene.name))
+                     ? fmt::format(fmt::runtime(view::translated("Report of {}", scene.overlay.language)),
+                                   printable(scene.name))
                      : printable(scene.overlay.title);
-    page.setting = {{word("Bodies"), system_text(film.system())},
-                    {word("Method"), plan_text(film.system(), film.plan())},
-                    {word("Duration"),
-                     view::localized(fmt::format("{:g} s", scene.world.duration_s), scene.overlay.language)},
-                    {word("Rows"), fmt::format(fmt::runtime(word("{} per second")),
-                                               scene.video.scene_rate().rational().text())},
+    page.setting = {{"Bodies", system_text(film.system())},
+                    {"Method", plan_text(film.system(), film.plan())},
+                    {"Duration", fmt::format("{:g} s", scene.world.duration_s)},
+                    {"Rows", fmt::format("{} per second", scene.video.scene_rate().rational().text())},
                     {"Corda", std::string(version())}};
-    translate(film, chapters);
+    translate(scene.overlay.language, chapters);
     page.chapters = std::move(chapters);
     return page;
 }

@@ -84,7 +84,6 @@ struct Sample {
 /// One kind of plot: its axes and empty curves, and the values that a sample adds to the curves: the y of
 /// each over time, otherwise x and y.
 struct Kind {
-    bool needs_velocities;
     PlotData (*axes)(const Subject& subject);
     std::vector<CurvePoint> (*values)(const Subject& subject, const Sample& sample);
 };
@@ -94,8 +93,7 @@ const PlotData::AxisName kTime{"t", "s"};
 
 /// In the order of LivePlot.
 const Kind kKinds[] = {
-    {true,
-     [](const Subject& subject) -> PlotData {
+    {[](const Subject& subject) -> PlotData {
          using Hue = PlotData::Hue;
          const double speed_m_s = subject.size_m / subject.end_s;
          return {kTime,
@@ -111,8 +109,7 @@ const Kind kKinds[] = {
                  {.y = potential_j},
                  {.y = sample.energy.kinetic_j + potential_j}};
      }},
-    {true,
-     [](const Subject& subject) -> PlotData {
+    {[](const Subject& subject) -> PlotData {
          return {kTime, {subject.word("angle"), "°", kStill, "φ"}, subject.end_s, subject.curves()};
      },
      [](const Subject&, const Sample& sample) {
@@ -120,8 +117,7 @@ const Kind kKinds[] = {
          for (const CurvePoint& turn : sample.turns) values.push_back({.y = kDegrees * turn.x});
          return values;
      }},
-    {true,
-     [](const Subject& subject) -> PlotData {
+    {[](const Subject& subject) -> PlotData {
          const double least = kStill / kDegrees;
          return {{subject.word("angle"), "rad", least, "φ"},
                  {subject.word("angular velocity"), "rad/s", least / subject.end_s, "ω"},
@@ -129,8 +125,7 @@ const Kind kKinds[] = {
                  subject.curves()};
      },
      [](const Subject&, const Sample& sample) { return sample.turns; }},
-    {false,
-     [](const Subject& subject) -> PlotData {
+    {[](const Subject& subject) -> PlotData {
          const std::string name = subject.name_of(0) + " – " + subject.name_of(1);
          return {kTime,
                  {subject.word("distance of the tips"), "m", 0.0, subject.word("distance"), true},
@@ -143,8 +138,7 @@ const Kind kKinds[] = {
          const std::size_t b = subject.tips[1];
          return {{.y = sim::length(state.x_m[a] - state.x_m[b], state.y_m[a] - state.y_m[b])}};
      }},
-    {false,
-     [](const Subject& subject) -> PlotData {
+    {[](const Subject& subject) -> PlotData {
          const std::size_t tip = tip_of(subject.system);
          const std::string x = subject.system.bodies.size() > 1
                                    ? fmt::format(fmt::runtime(subject.word("x of {}")),
@@ -180,11 +174,6 @@ void raise_zeros(double size_m, PlotData& data) {
 
 }  // namespace
 
-StateFields LivePlotData::readings() const {
-    return {.velocities = std::any_of(scene_->overlay.plots.begin(), scene_->overlay.plots.end(),
-                                      [](LivePlot plot) { return kind_of(plot).needs_velocities; })};
-}
-
 std::vector<double> LivePlotData::times_s() const {
     if (scene_->overlay.plots.empty()) return {};
     constexpr std::size_t kNumbersPerParticle = 4;
@@ -211,13 +200,11 @@ std::vector<PlotData> LivePlotData::read(const std::vector<MethodDef>& methods, 
     for (std::size_t i = 0; i < timeline.size() && timeline.time_s(i) <= end_s; i += stride) {
         const State& state = state_at(timeline.time_s(i));
         Sample sample{state, {}, {}};
-        if (readings().velocities) {
-            sample.energy = energy_of(state);
-            for (std::size_t k = 0; k < subject.turning.size(); ++k)
-                sample.turns.push_back(
-                    turning_of(subject.turning[k], state, turns.empty() ? nullptr : &turns[k]));
-            turns = sample.turns;
-        }
+        sample.energy = energy_of(state);
+        for (std::size_t k = 0; k < subject.turning.size(); ++k)
+            sample.turns.push_back(
+                turning_of(subject.turning[k], state, turns.empty() ? nullptr : &turns[k]));
+        turns = sample.turns;
         for (std::size_t p = 0; p < plots.size(); ++p) {
             const std::vector<CurvePoint> values = kind_of(plots[p]).values(subject, sample);
             for (std::size_t k = 0; k < values.size(); ++k)

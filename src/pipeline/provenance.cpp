@@ -15,6 +15,7 @@
 #include "corda/media/format/file_kind.hpp"
 #include "corda/media/read/video_comment.hpp"
 #include "corda/scene/write_scene.hpp"
+#include "corda/view/font.hpp"
 
 namespace corda {
 namespace {
@@ -133,6 +134,8 @@ Provenance parsed(const Json& json) {
     provenance.scene = json.value("scene", "");
     provenance.left_out = json.value("left_out", "");
     provenance.frames = json.value("frames", "");
+    for (const Json& font : json.value("fonts", Json::array()))
+        provenance.fonts.push_back(printable(font.get<std::string>()));
     if (json.contains("picture")) provenance.picture = picture_of(json["picture"]);
     if (json.contains("golden")) provenance.golden = golden_of(json["golden"]);
     provenance.columns = json.value("columns", 0);
@@ -149,6 +152,7 @@ Json json_of(const Provenance& provenance) {
     if (!provenance.scene.empty()) json["scene"] = provenance.scene;
     if (!provenance.left_out.empty()) json["left_out"] = provenance.left_out;
     if (!provenance.frames.empty()) json["frames"] = provenance.frames;
+    if (!provenance.fonts.empty()) json["fonts"] = provenance.fonts;
     if (provenance.picture) json["picture"] = json_of(*provenance.picture);
     if (provenance.golden) json["golden"] = json_of(*provenance.golden);
     for (const Provenance& part : provenance.parts) json["parts"].push_back(json_of(part));
@@ -229,6 +233,7 @@ Provenance provenance_of(const Scene& scene) {
     Provenance provenance;
     provenance.corda = version();
     provenance.name = printable(scene.name);
+    provenance.fonts = view::fallback_names(shown_texts(scene));
     std::size_t particles = 0;
     for (const RopeDef& rope : scene.ropes) particles += rope.points_m.size();
     for (const NetDef& net : scene.nets) particles += net.points_m.size();

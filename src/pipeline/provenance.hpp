@@ -61,7 +61,9 @@ struct Provenance {
     std::string name = {};      ///< Scene::name, printable
     std::string scene = {};     ///< a scene file (write_scene)
     std::string left_out = {};  ///< why there is no scene; empty if there is one
-    std::string frames = {};    ///< of a video or a sequence of pictures: "FIRST:END"
+    /// Names and versions of the fonts of its title, texts and labels, besides DejaVu Sans.
+    std::vector<std::string> fonts = {};
+    std::string frames = {};  ///< of a video or a sequence of pictures: "FIRST:END"
     std::optional<PictureOrigin> picture = {};
     std::optional<GoldenRecord> golden = {};  ///< of a picture that `corda golden` keeps
     std::vector<Provenance> parts = {};       ///< of a video of several scenes

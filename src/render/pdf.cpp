@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "corda/core/basics.hpp"
@@ -62,9 +63,9 @@ Pattern pattern_of(const Ground& ground, int height) {
 }
 
 /// The face owns the font file, because cairo may keep the face longer than the page lives.
-FontFace make_font_face() {
+FontFace make_font_face(const view::FallbackFont* font) {
     static const cairo_user_data_key_t key{};
-    auto file = std::make_unique<view::FontFile>();
+    auto file = std::make_unique<view::FontFile>(font);
     FontFace face(cairo_ft_font_face_create_for_ft_face(file->face(), FT_LOAD_NO_HINTING));
     check(cairo_font_face_set_user_data(face.get(), &key, file.get(),
                                         [](void* kept) { delete static_cast<view::FontFile*>(kept); }));
@@ -161,10 +162,23 @@ class Pdf : public VectorPage {
 
     /// Places glyphs like Font::write(), as text that can be searched and copied.
     void write(const view::Text& text) {
-        cairo_t* const cairo = cairo_.get();
         const std::string utf8 = printable(text.utf8);
+        view::Text part = text;
+        for (const view::FontRun& run : font_.runs_of(utf8)) {
+            FontFace& face = faces_[run.font];
+            if (!face) face = make_font_face(run.font);
+            part.utf8 = run.utf8;
+            write(part, face.get());
+            part.x_px += font_.width_px(run.utf8, text.size_px);
+        }
+    }
+
+    /// Writes a text in one font.
+    void write(const view::Text& text, cairo_font_face_t* face) {
+        cairo_t* const cairo = cairo_.get();
+        const std::string& utf8 = text.utf8;
         const auto bytes = static_cast<int>(utf8.size());
-        cairo_set_font_face(cairo, font_face_.get());
+        cairo_set_font_face(cairo, face);
         cairo_set_font_size(cairo, text.size_px);
         cairo_set_source(cairo, solid(text.color).get());
         cairo_glyph_t* glyphs = nullptr;
@@ -214,7 +228,7 @@ class Pdf : public VectorPage {
     }
 
     view::Font font_;
-    FontFace font_face_ = make_font_face();
+    std::map<const view::FallbackFont*, FontFace> faces_;
     // The surface writes to bytes_ until it is destroyed.
     std::string bytes_;
     std::unique_ptr<cairo_surface_t, CairoDeleter> surface_;

@@ -175,11 +175,14 @@ class Svg : public VectorPage {
             // textLength gives a substitute font the same width. Without support for it, a centred text
             // errs equally on both sides.
             const int width_px = font_.width_px(text.utf8, text.size_px);
+            std::string families = "DejaVu Sans";
+            for (const view::FontRun& run : font_.runs_of(text.utf8))
+                if (run.font != nullptr) families += ", " + markup_text(run.font->family);
             fmt::format_to(out,
                            R"(<text x="{}" y="{}" text-anchor="middle" textLength="{}" )"
-                           R"(font-family="DejaVu Sans, sans-serif" font-size="{}" fill="{}"{} )"
+                           R"(font-family="{}, sans-serif" font-size="{}" fill="{}"{} )"
                            R"(xml:space="preserve">{}</text>)",
-                           number(text.x_px + 0.5 * width_px), text.y_px, width_px, text.size_px,
+                           number(text.x_px + 0.5 * width_px), text.y_px, width_px, families, text.size_px,
                            opaque_text(text.color), opacity("fill-opacity", text.color),
                            markup_text(printable(text.utf8)));
             text_ += "\n";

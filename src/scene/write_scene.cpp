@@ -14,6 +14,7 @@
 #include "corda/scene/document.hpp"
 #include "corda/scene/field.hpp"
 #include "corda/scene/readers.hpp"
+#include "corda/view/font.hpp"
 
 namespace corda {
 
@@ -280,7 +281,7 @@ std::string write_scene(const Scene& scene) {
         for (const Table& table : *some) toml += text_of(table);
     std::vector<std::string> changes;
     try {
-        changes = differences(digest_of(tables), digest(parse_scene(toml, "scene")));
+        changes = differences(digest_of(tables), digest_of(Tables(parse_scene(toml, "scene"))));
     } catch (const Error& error) {
         fail_unwritable(error.what());
     }
@@ -305,8 +306,18 @@ Setting solver_setting(const Scene& scene) {
     return "solver=" + text;
 }
 
+std::vector<std::string> shown_texts(const Scene& scene) {
+    std::vector<std::string> texts{scene.overlay.title};
+    for (const OverlayTextDef& text : scene.overlay.texts) texts.push_back(text.text);
+    for (const BodyStyleDef& body : scene.body_styles) texts.push_back(body.label);
+    return texts;
+}
+
 std::map<std::string, std::string> digest(const Scene& scene) {
-    return digest_of(Tables(scene));
+    std::map<std::string, std::string> digest = digest_of(Tables(scene));
+    const std::vector<std::string> fonts = view::fallback_names(shown_texts(scene));
+    if (!fonts.empty()) digest.emplace("fonts", fmt::format("{}", fmt::join(fonts, ", ")));
+    return digest;
 }
 
 std::string hashed(std::string_view text) {

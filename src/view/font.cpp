@@ -63,11 +63,13 @@ void check_font(FT_Error error) {
 
 }  // namespace
 
-FontFile::FontFile() {
+FontFile::FontFile(const FallbackFont* font) {
     FT_Error error = FT_Init_FreeType(&library_);
     if (error == 0) {
-        error = FT_New_Memory_Face(library_, corda_font_begin,
-                                   static_cast<FT_Long>(corda_font_end - corda_font_begin), 0, &face_);
+        error = font != nullptr
+                    ? FT_New_Face(library_, font->path.c_str(), font->index, &face_)
+                    : FT_New_Memory_Face(library_, corda_font_begin,
+                                         static_cast<FT_Long>(corda_font_end - corda_font_begin), 0, &face_);
         if (error != 0) FT_Done_FreeType(library_);
     }
     if (error != 0)
@@ -97,7 +99,9 @@ struct Font::Impl {
     }
 
     Glyph load(char32_t character, int size_px) {
-        const FT_Face face = file.face();
+        const FallbackFont* const other = font_of(character);
+        const FT_Face face =
+            other == nullptr ? file.face() : others.try_emplace(other, other).first->second.face();
         check_font(FT_Set_Pixel_Sizes(face, 0, static_cast<FT_UInt>(size_px)));
         check_font(FT_Load_Char(face, character, FT_LOAD_RENDER | FT_LOAD_TARGET_LIGHT));
         const FT_GlyphSlot slot = face->glyph;
@@ -129,7 +133,13 @@ struct Font::Impl {
         return x_px;
     }
 
+    /// The font of a character; null: DejaVu Sans.
+    [[nodiscard]] const FallbackFont* font_of(char32_t character) const {
+        return FT_Get_Char_Index(file.face(), character) != 0 ? nullptr : fallback_font(character);
+    }
+
     FontFile file;
+    std::map<const FallbackFont*, FontFile> others;
     std::map<std::pair<int, char32_t>, Glyph> glyphs;
 };
 
@@ -139,25 +149,65 @@ Font& Font::operator=(Font&&) noexcept = default;
 Font::~Font() = default;
 
 std::string missing_glyph(const std::string& text) {
-    const std::string missing = text.empty() ? "" : Font().missing(text);
+    const std::u32string missing = text.empty() ? U"" : Font().missing(text);
     if (missing.empty()) return "";
-    const bool is_one = missing.find(',') == std::string::npos;
-    return "the font, DejaVu Sans, has no " + missing + "; leave " +
-           (is_one ? "that character" : "these characters") + " out";
+    std::string names;
+    std::string packages;
+    for (const char32_t character : missing) {
+        names += fmt::format("{}U+{:04X}", names.empty() ? "" : ", ", static_cast<std::uint32_t>(character));
+        if (!can_fall_back(character)) continue;
+        // Hangul, kana and ideographs, and the signs between them.
+        const bool is_east_asian = (character >= 0x1100 && character < 0x1200) ||
+                                   (character >= 0x2e80 && character < 0xd800) ||
+                                   (character >= 0xf900 && character < 0xfb00) ||
+                                   (character >= 0xfe30 && character < 0xfff0) || character >= 0x20000;
+        const std::string package = is_east_asian ? " fonts-noto-cjk" : " fonts-noto-core";
+        if (packages.find(package) == std::string::npos) packages += package;
+    }
+    const char* const leave_out =
+        missing.size() == 1 ? "leave that character out" : "leave these characters out";
+    if (packages.empty()) return fmt::format("the font, DejaVu Sans, has no {}; {}", names, leave_out);
+    return fmt::format("no font of this machine has {}; install one (Debian: apt-get install{}), or {}",
+                       names, packages, leave_out);
 }
 
-std::string Font::missing(std::string_view utf8) const {
-    std::vector<char32_t> missing;
+std::vector<std::string> fallback_names(const std::vector<std::string>& texts) {
+    std::vector<std::string> names;
+    const Font font;
+    for (const std::string& text : texts) {
+        for (const FontRun& run : font.runs_of(text)) {
+            if (run.font == nullptr) continue;
+            const std::string name = run.font->family + " " + run.font->version;
+            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+        }
+    }
+    return names;
+}
+
+std::u32string Font::missing(std::string_view utf8) const {
+    std::u32string missing;
     while (!utf8.empty()) {
         const char32_t character = take_character(utf8);
-        const bool is_known = std::find(missing.begin(), missing.end(), character) != missing.end();
-        if (!is_known && FT_Get_Char_Index(impl_->file.face(), character) == 0) missing.push_back(character);
+        const bool is_known = missing.find(character) != std::u32string::npos;
+        if (!is_known && FT_Get_Char_Index(impl_->file.face(), character) == 0 &&
+            fallback_font(character) == nullptr)
+            missing += character;
     }
-    std::string text;
-    for (const char32_t character : missing) {
-        text += fmt::format("{}U+{:04X}", text.empty() ? "" : ", ", static_cast<std::uint32_t>(character));
+    return missing;
+}
+
+std::vector<FontRun> Font::runs_of(std::string_view utf8) const {
+    std::vector<FontRun> runs;
+    while (!utf8.empty()) {
+        const std::string_view rest = utf8;
+        const FallbackFont* const font = impl_->font_of(take_character(utf8));
+        const std::size_t bytes = rest.size() - utf8.size();
+        if (!runs.empty() && runs.back().font == font)
+            runs.back().utf8 = {runs.back().utf8.data(), runs.back().utf8.size() + bytes};
+        else
+            runs.push_back({rest.substr(0, bytes), font});
     }
-    return text;
+    return runs;
 }
 
 int Font::width_px(std::string_view utf8, int size_px) {

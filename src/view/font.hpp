@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "corda/core/image.hpp"
 #include "corda/view/draw_list.hpp"
@@ -12,11 +13,33 @@ struct FT_FaceRec_;
 
 namespace corda::view {
 
-/// DejaVu Sans, which is part of the program, as FreeType reads it.
+/// A font of this machine for characters that DejaVu Sans lacks.
+struct FallbackFont {
+    std::string path;
+    int index = 0;  ///< of the face in the file
+    std::string family;
+    std::string version;
+};
+
+/// False for characters that are never looked up: emoji, and those of scripts that run from the right or
+/// whose letters change next to others, which takes more than placing glyphs side by side.
+[[nodiscard]] bool can_fall_back(char32_t character);
+
+/// The font that fontconfig finds for a character; null if there is none. Threads may call it at once. Fonts
+/// live until the process ends.
+[[nodiscard]] const FallbackFont* fallback_font(char32_t character);
+
+/// A part of a text in one font; null: DejaVu Sans.
+struct FontRun {
+    std::string_view utf8;
+    const FallbackFont* font = nullptr;
+};
+
+/// DejaVu Sans, which is part of the program, or another font, as FreeType reads it.
 class FontFile {
   public:
     /// Throws corda::Error (kInternal) if it cannot be read.
-    FontFile();
+    explicit FontFile(const FallbackFont* font = nullptr);
     FontFile(const FontFile&) = delete;
     FontFile& operator=(const FontFile&) = delete;
     ~FontFile();
@@ -28,9 +51,10 @@ class FontFile {
     FT_FaceRec_* face_ = nullptr;
 };
 
-/// Draws text in DejaVu Sans. Glyphs stand on whole pixels; all digits are equally wide.
+/// Draws text in DejaVu Sans, with other fonts for what it lacks. Glyphs stand on whole pixels; all digits
+/// are equally wide.
 ///
-/// Text is UTF-8. A character that the font lacks, a control character or an invalid byte is drawn as a box.
+/// Text is UTF-8. A character that no font has, a control character or an invalid byte is drawn as a box.
 /// Rendered glyphs are cached, so one thread at a time may use a Font.
 class Font {
   public:
@@ -40,8 +64,10 @@ class Font {
     Font& operator=(Font&&) noexcept;
     ~Font();
 
-    /// The characters of a text that the font lacks, each once and in order, as "U+1F9F6, U+6F22".
-    [[nodiscard]] std::string missing(std::string_view utf8) const;
+    /// The characters of a text that no font has, each once and in order.
+    [[nodiscard]] std::u32string missing(std::string_view utf8) const;
+    /// The parts of a text by their fonts.
+    [[nodiscard]] std::vector<FontRun> runs_of(std::string_view utf8) const;
     /// Advance width of a text, in pixels.
     [[nodiscard]] int width_px(std::string_view utf8, int size_px);
     /// Bounding box of the pixels that write() would paint in an unlimited frame; may be empty.
@@ -54,9 +80,12 @@ class Font {
     std::unique_ptr<Impl> impl_;
 };
 
-/// The reason a text cannot be shown: "the font, DejaVu Sans, has no U+1F9F6; leave that character out".
-/// Empty if it can.
+/// The reason a text cannot be shown: "the font, DejaVu Sans, has no U+1F9F6; leave that character out", or
+/// install a font. Empty if it can.
 [[nodiscard]] std::string missing_glyph(const std::string& text);
+
+/// Names and versions of the fallback fonts of texts: "WenQuanYi Micro Hei 0.200".
+[[nodiscard]] std::vector<std::string> fallback_names(const std::vector<std::string>& texts);
 
 // Sizes of text as shares of the em.
 inline constexpr double kAscent = 0.76;   ///< of DejaVu's capitals

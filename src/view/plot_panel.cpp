@@ -148,8 +148,16 @@ void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_color
     curves_.clear();
     for (const PlotData::Curve& curve : data.curves) {
         const auto hue = static_cast<std::size_t>(curve.hue);
-        const Color own = hue == 0 ? text_color_ : palette_[hue];
-        curves_.push_back({curve.name, curve.body ? body_colors[*curve.body] : own, {}, {}, curve.points});
+        Color color = hue == 0 ? text_color_ : palette_[hue];
+        if (curve.body) {
+            // Bodies whose colours tell a quantity all have the same.
+            const auto is_alike = [&](const PlotData::Curve& other) {
+                return body_colors[*other.body] == body_colors[*curve.body];
+            };
+            const bool is_alone = std::count_if(data.curves.begin(), data.curves.end(), is_alike) == 1;
+            color = is_alone ? body_colors[*curve.body] : palette_[*curve.body % palette_.size()];
+        }
+        curves_.push_back({curve.name, color, {}, {}, curve.points});
     }
     place_names(font);
     const bool is_drawable = can_be_divided(plot_.x.high - plot_.x.low) &&

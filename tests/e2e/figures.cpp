@@ -194,6 +194,32 @@ TEST_F(Figures, HaveTextAsText) {
     EXPECT_THAT(fonts.out, HasSubstr("+DejaVuSans"));  // embedded
 }
 
+TEST_F(Figures, HaveOtherFontsForWhatTheirsLacks) {
+    for (const char* const name : {"a.svg", "a.pdf", "a.png"}) {
+        const auto result = run_corda({"still", scene_, "--at", "0.3", "-o", folder_.file(name), "--set",
+                                       "overlay={title=\"Pendel 振り子 A\",time=false,scale_bar=false}"});
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+    }
+    EXPECT_EQ(test::run_shell("pdftotext " + test::quoted(folder_.file("a.pdf")) + " - | head -1").out,
+              "Pendel 振り子 A\n");
+    EXPECT_NE(test::run_shell("pdffonts " + test::quoted(folder_.file("a.pdf")) + " | grep -c yes").out,
+              "1\n");
+    const std::string family =
+        test::run_shell("fc-match -f '%{family[0]}' sans-serif:charset=632f:lang=en").out;
+    EXPECT_THAT(test::read_file(folder_.file("a.svg")),
+                HasSubstr("font-family=\"DejaVu Sans, " + family + ", sans-serif\""));
+    std::string provenance;
+    for (const auto& [keyword, text] : read_png_info(folder_.file("a.png")).text)
+        if (keyword == "Provenance") provenance = text;
+    EXPECT_THAT(provenance, HasSubstr("\"fonts\":[\"" + family + " "));
+    const auto refused = run_corda(
+        {"still", scene_, "--at", "0", "-o", folder_.file("b.png"), "--set", "overlay.title=\"\U0002fa20\""});
+    EXPECT_EQ(refused.exit_code, 3);
+    EXPECT_THAT(refused.err,
+                HasSubstr("overlay.title: no font of this machine has U+2FA20; install one (Debian: "
+                          "apt-get install fonts-noto-cjk), or leave that character out"));
+}
+
 TEST_F(Figures, HaveTheSameBytesOnEveryRun) {
     for (const char* const ending : {"svg", "pdf"}) {
         std::vector<std::string> bytes;

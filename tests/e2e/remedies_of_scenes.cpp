@@ -37,6 +37,22 @@ INSTANTIATE_TEST_SUITE_P(
                "plan SCENE",
                "the rope has 2 shapes (hang, points); keep one of them",
                {{{kHang, ""}}, {{"points = [[0, 0], [1, 0]]", ""}}}},
+        Remedy{"angle_without_a_pin",
+               rope_scene("points = [[0, 0], [1, 0]]\npinned = []\n[overlay]\nplots = [\"angle\"]"),
+               "plan SCENE",
+               "pin one particle of an open rope, or remove this plot",
+               {{{"pinned = []", "pinned = [0]"}}, {{"\"angle\"", ""}}}},
+        Remedy{
+            "divergence_of_one_rope",
+            rope_scene(kHang + "[overlay]\nplots = [\"divergence\"]"),
+            "plan SCENE",
+            "give another [[rope]] or rope.copies, or remove this plot",
+            {{{"[overlay]", "copies = { count = 2, angle_deg = 1 }\n[overlay]"}}, {{"\"divergence\"", ""}}}},
+        Remedy{"plot_twice",
+               rope_scene(kHang + "[overlay]\nplots = [\"tip\", \"tip\"]"),
+               "plan SCENE",
+               "the same plot twice; remove one",
+               {{{", \"tip\"", ""}}}},
         Remedy{"net_beyond_the_memory",
                scene_of("[[net]]\ngrid = { columns = 1000, rows = 900, spacing = 0.1, diagonals = true "
                         "}\npinned = []\n"

@@ -1,5 +1,6 @@
 #include "corda/view/font.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,9 +26,55 @@ DrawList written(const std::string& utf8, int size_px) {
 
 TEST(Font, NamesEveryCharacterThatItLacks) {
     const Font font;
-    EXPECT_EQ(font.missing("Pendel · ½ m, φ = 30° − 1.2·10⁻³"), "");
-    EXPECT_EQ(font.missing("a ball of yarn \U0001f9f6, 漢字"), "U+1F9F6, U+6F22, U+5B57");
-    EXPECT_EQ(font.missing("two\nlines"), "U+000A");
+    EXPECT_EQ(font.missing("Pendel · ½ m, φ = 30° − 1.2·10⁻³"), U"");
+    EXPECT_EQ(font.missing("a ball of yarn \U0001f9f6, क \U0001f9f6, 漢字"), U"\U0001f9f6\u0915");
+    EXPECT_EQ(font.missing("two\nlines"), U"\n");
+}
+
+TEST(FallbackFonts, DrawWhatTheFontLacks) {
+    const Font font;
+    const auto runs = font.runs_of("a 漢字b");
+    ASSERT_EQ(runs.size(), 3U);
+    EXPECT_EQ(runs[0].utf8, "a ");
+    EXPECT_EQ(runs[0].font, nullptr);
+    EXPECT_EQ(runs[1].utf8, "漢字");
+    ASSERT_NE(runs[1].font, nullptr);
+    EXPECT_EQ(runs[1].font, fallback_font(U'字'));
+    EXPECT_EQ(runs[2].utf8, "b");
+    EXPECT_EQ(runs[2].font, nullptr);
+    const std::vector<std::string> names = fallback_names({"a 漢字b", "漢", "ß"});
+    ASSERT_EQ(names.size(), 1U);
+    EXPECT_EQ(names[0], runs[1].font->family + " " + runs[1].font->version);
+    EXPECT_GT(std::stod(runs[1].font->version), 0.0);
+    EXPECT_NE(written("漢", 32).coverage, written("\uffff", 32).coverage);
+    EXPECT_NE(written("漢", 32).coverage, written("字", 32).coverage);
+    Font other;
+    EXPECT_EQ(other.width_px("a漢b", 32), other.width_px("ab", 32) + other.width_px("漢", 32));
+    EXPECT_EQ(other.width_px("漢", 32), 32);
+}
+
+TEST(FallbackFonts, AreNotAskedForEmojiAndLettersThatChange) {
+    for (const char32_t character : {U'\U0001f600', U'\U0001f9f6', U'\u0915', U'\u0e01', U'\n'})
+        EXPECT_FALSE(can_fall_back(character)) << static_cast<unsigned>(character);
+    for (const char32_t character : {U'漢', U'あ', U'한', U'。', U'Ａ', U'\u1200'})
+        EXPECT_TRUE(can_fall_back(character)) << static_cast<unsigned>(character);
+}
+
+TEST(FallbackFonts, AreAdvisedWhereTheyWouldHelp) {
+    EXPECT_EQ(missing_glyph("漢字 ok"), "");
+    EXPECT_EQ(missing_glyph("\U0001f9f6\u0915"),
+              "the font, DejaVu Sans, has no U+1F9F6, U+0915; leave these characters out");
+    // Not assigned to any character.
+    EXPECT_EQ(
+        missing_glyph("\U0002fa20"),
+        "no font of this machine has U+2FA20; install one (Debian: apt-get install fonts-noto-cjk), or leave "
+        "that character out");
+    EXPECT_THAT(missing_glyph("\U0002fa20\u0378"),
+                testing::HasSubstr("install fonts-noto-cjk fonts-noto-core)"));
+    EXPECT_EQ(missing_glyph("\u0378\u0379"),
+              "no font of this machine has U+0378, U+0379; install one (Debian: apt-get install "
+              "fonts-noto-core), or "
+              "leave these characters out");
 }
 
 TEST(Fonts, HaveDigitsOfOneWidth) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "corda/view/number_text.hpp"
 #include "corda/view/overlay.hpp"
 
 namespace corda::view {
@@ -200,11 +201,14 @@ TEST(PlotPanel, HasOneColorPerQuantityAndThoseOfBodies) {
         for (const Color color : colors) EXPECT_EQ(std::count(colors.begin(), colors.end(), color), 1);
         EXPECT_EQ(colors, colors_of(data, {}, theme));
     }
+    data.curves.resize(2);
     data.curves[0].body = 1;
     data.curves[1].body = 0;
-    const std::vector<Color> colors = colors_of(data, bodies, Theme::kDark);
-    EXPECT_EQ(colors[0], bodies[1]);
-    EXPECT_EQ(colors[1], bodies[0]);
+    EXPECT_EQ(colors_of(data, bodies, Theme::kDark), (std::vector<Color>{bodies[1], bodies[0]}));
+    // Bodies of one colour have curves of two.
+    const std::vector<Color> grey(3, Color{0x80, 0x80, 0x80});
+    const std::vector<Color> apart = colors_of(data, grey, Theme::kDark);
+    EXPECT_FALSE(apart[0] == apart[1]);
 }
 
 TEST(PlotPanel, HasARowPerPowerOf10OfALogarithm) {

@@ -1,0 +1,83 @@
+#include <fmt/format.h>
+#include <fontconfig/fontconfig.h>
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "corda/view/font.hpp"
+
+namespace corda::view {
+namespace {
+
+struct Destroy {
+    void operator()(FcPattern* pattern) const noexcept { FcPatternDestroy(pattern); }
+    void operator()(FcCharSet* characters) const noexcept { FcCharSetDestroy(characters); }
+};
+using Pattern = std::unique_ptr<FcPattern, Destroy>;
+
+std::optional<FallbackFont> find_font(char32_t character) {
+    const std::unique_ptr<FcCharSet, Destroy> characters(FcCharSetCreate());
+    FcCharSetAddChar(characters.get(), character);
+    const Pattern wanted(FcPatternCreate());
+    FcPatternAddCharSet(wanted.get(), FC_CHARSET, characters.get());
+    FcPatternAddString(wanted.get(), FC_FAMILY, reinterpret_cast<const FcChar8*>("sans-serif"));
+    // The same font whatever the language of the environment is.
+    FcPatternAddString(wanted.get(), FC_LANG, reinterpret_cast<const FcChar8*>("en"));
+    FcPatternAddBool(wanted.get(), FC_SCALABLE, FcTrue);
+    FcPatternAddBool(wanted.get(), FC_COLOR, FcFalse);
+    FcConfigSubstitute(nullptr, wanted.get(), FcMatchPattern);
+    FcDefaultSubstitute(wanted.get());
+    FcResult result{};
+    const Pattern font(FcFontMatch(nullptr, wanted.get(), &result));
+    FcCharSet* its = nullptr;
+    FcChar8* path = nullptr;
+    FcChar8* family = nullptr;
+    FallbackFont found;
+    int version = 0;
+    FcBool is_scalable = FcFalse;
+    const bool is_good = font && FcPatternGetCharSet(font.get(), FC_CHARSET, 0, &its) == FcResultMatch &&
+                         FcCharSetHasChar(its, character) != FcFalse &&
+                         FcPatternGetBool(font.get(), FC_SCALABLE, 0, &is_scalable) == FcResultMatch &&
+                         is_scalable != FcFalse &&
+                         FcPatternGetString(font.get(), FC_FILE, 0, &path) == FcResultMatch &&
+                         FcPatternGetInteger(font.get(), FC_INDEX, 0, &found.index) == FcResultMatch &&
+                         FcPatternGetString(font.get(), FC_FAMILY, 0, &family) == FcResultMatch &&
+                         FcPatternGetInteger(font.get(), FC_FONTVERSION, 0, &version) == FcResultMatch;
+    if (!is_good) return std::nullopt;
+    found.path = reinterpret_cast<const char*>(path);
+    found.family = reinterpret_cast<const char*>(family);
+    found.version = fmt::format("{:.3f}", version / 65536.0);
+    return found;
+}
+
+}  // namespace
+
+bool can_fall_back(char32_t character) {
+    struct Range {
+        char32_t first;
+        char32_t last;
+    };
+    constexpr Range kExcluded[] = {{0x0000, 0x001f}, {0x0590, 0x109f},   {0x1700, 0x18af},
+                                   {0x1900, 0x1cff}, {0xa800, 0xabff},   {0xfb1d, 0xfdff},
+                                   {0xfe70, 0xfeff}, {0x10a00, 0x11fff}, {0x1f000, 0x1fbff}};
+    for (const Range& range : kExcluded)
+        if (character >= range.first && character <= range.last) return false;
+    return true;
+}
+
+const FallbackFont* fallback_font(char32_t character) {
+    static std::mutex mutex;
+    static std::map<char32_t, std::optional<FallbackFont>> known;
+    static std::map<std::string, FallbackFont> fonts;  // one per face
+    if (!can_fall_back(character)) return nullptr;
+    const std::lock_guard lock(mutex);
+    const auto [entry, is_new] = known.try_emplace(character);
+    if (is_new) entry->second = find_font(character);
+    if (!entry->second) return nullptr;
+    const FallbackFont& font = *entry->second;
+    return &fonts.try_emplace(fmt::format("{} {}", font.index, font.path), font).first->second;
+}
+
+}  // namespace corda::view
