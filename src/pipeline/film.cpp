@@ -13,7 +13,6 @@
 #include "corda/pipeline/motion_input.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/sim/auto/planner.hpp"
-#include "corda/sim/forces/forces.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/camera.hpp"
 #include "corda/view/number_text.hpp"
@@ -58,10 +57,9 @@ struct Film::Impl {
 
     pipeline::Motion& start_motion() const {
         const CancelScope starting = reporting_start();
-        return run->motion.emplace(
-            system, scene.world, pipeline::if_all_named(run->named), timeline(), def.motion_budget_bytes,
-            quantity_of(scene.style.color_by),
-            def.readings.with(plot_data.readings()).with({.velocities = scene.overlay.energy}));
+        return run->motion.emplace(system, scene.world, pipeline::if_all_named(run->named), timeline(),
+                                   def.motion_budget_bytes, quantity_of(scene.style.color_by),
+                                   def.readings.with(plot_data.readings()));
     }
 
     /// Required while the motion is read.
@@ -213,12 +211,8 @@ struct Film::Impl {
     view::Caption caption_of(const DrawContext& by, const view::Camera& map) const {
         std::optional<double> bound_px;
         if (plan.error_bound_m) bound_px = *plan.error_bound_m * map.pixels_per_metre();
-        view::Caption caption{by.state.time_s,
-                              by.figures.energy_error,
-                              method_caption(plan, bound_px, scene.overlay.language),
-                              {},
-                              by.energy,
-                              energy_scale_j};
+        const std::string method = method_caption(plan, bound_px, scene.overlay.language);
+        view::Caption caption{by.state.time_s, by.figures.energy_error, method, {}, by.energy};
         by.renderer.locate_labels(by.state, map, caption);
         return caption;
     }
@@ -313,7 +307,6 @@ struct Film::Impl {
     pipeline::LivePlotData plot_data;
     pipeline::Motion& motion;
     Plan& plan;
-    double energy_scale_j = sim::energy_scale_j(system, sim::Forces(scene.world).on_particles(system));
     std::vector<view::PlotData> plots;
     std::optional<CameraDef> camera;
     std::optional<view::CameraTrack> track;  ///< of a camera that moves

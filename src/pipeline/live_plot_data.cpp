@@ -33,7 +33,7 @@ constexpr double kStill = 1e-3;
 /// Maximum number of bodies with a curve each.
 constexpr std::size_t kMaxCurves = 16;
 
-/// What the plots show of a scene.
+/// The parts of a scene that plots show.
 struct Subject {
     Subject(const Scene& scene, const System& of)
         : system(of), language(scene.overlay.language), end_s(scene.world.duration_s) {

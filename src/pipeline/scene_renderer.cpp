@@ -13,6 +13,7 @@
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/pipeline/tracked_particle.hpp"
 #include "corda/render/frame_renderer.hpp"
+#include "corda/sim/forces/forces.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::pipeline {
@@ -75,6 +76,7 @@ SceneRenderer::SceneRenderer(const Scene& scene, const System& system, const std
       overlay_(scene.overlay, scene.style, scene.video.width_px, scene.video.height_px,
                scene.video.scene_rate().interval_s()) {
     gl_.require_gpu = require_gpu;
+    overlay_.set_energy_scale(sim::energy_scale_j(system, sim::Forces(scene.world).on_particles(system)));
 }
 
 bool SceneRenderer::needs_motion() const {

@@ -152,8 +152,7 @@ std::vector<Key> overlay_keys() {
         {"overlay", "method", boolean, "", field(&OverlayDef::method),
          "the method and the bound of the displayed error, below the title"},
         {"overlay", "plots", live_plots(), "", field(&OverlayDef::plots), "live plots next to the picture",
-         "over time: energies, angle of each rope, distance of the tips of ropes 0 and 1, x and y of the "
-         "first "
+         "over time: energies, angles of ropes, distance of the tips of ropes 0 and 1, x and y of the first "
          "tip; phase: angular velocity against angle"},
         {"overlay", "language", one_of({"en", "de", "pt", "es", "fr"}), "", field(&OverlayDef::language),
          "the language of words and the decimal sign", "in plots and reports too"},

@@ -63,15 +63,15 @@ std::string energy_text(const Energy& energy, double scale_j, Language language)
 /// A text at the lower edge, to the right of the time.
 struct BottomText {
     bool (*is_shown)(const OverlayDef& def);
-    std::string (*text)(const Caption& caption, Language language);
+    std::string (*text)(const Caption& caption, double energy_scale_j, Language language);
 };
 constexpr BottomText kBottomTexts[] = {
     {[](const OverlayDef& def) { return def.energy; },
-     [](const Caption& caption, Language language) {
+     [](const Caption& caption, double energy_scale_j, Language language) {
          if (caption.energy_error)
              return localized(translated("energy error", language) + " " + power_text(*caption.energy_error),
                               language);
-         return caption.energy ? energy_text(*caption.energy, caption.energy_scale_j, language) : "";
+         return caption.energy ? energy_text(*caption.energy, energy_scale_j, language) : "";
      }},
 };
 
@@ -240,7 +240,8 @@ void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& li
     if (scale_bar_) right_px = draw_scale_bar(pixels_per_metre, left_px, list);
     for (const BottomText& item : kBottomTexts) {
         if (item.is_shown(def_) && caption.time_s)
-            left_px = write_bottom(item.text(caption, def_.language), left_px, right_px, list);
+            left_px =
+                write_bottom(item.text(caption, energy_scale_j_, def_.language), left_px, right_px, list);
     }
     const int end_px = legend_ && scale_ ? draw_legend(list) : width_ - edge_px_;
     const int title_size_px = title_lines_.size() == 1 ? fitting_title_px(end_px) : title_px();

@@ -26,7 +26,6 @@ struct Caption {
     /// Where the particles of each label are: that next to it, and that from which its line comes.
     std::vector<std::pair<PixelPoint, PixelPoint>> labels = {};
     std::optional<Energy> energy = {};  ///< shown if its error is not defined; potentials since the start
-    double energy_scale_j = 0.0;        ///< for the unit of that
 };
 
 /// Adds the points of a state to a caption.
@@ -44,6 +43,8 @@ class Overlay {
     [[nodiscard]] Insets insets() const;
     /// Sets the scale of the legend; without a scale there is no legend.
     void set_scale(const ColorScale& scale) { scale_ = scale; }
+    /// Sets the scale of the energies of captions, which decides on their unit.
+    void set_energy_scale(double scale_j) { energy_scale_j_ = scale_j; }
     /// Sets the labels of bodies, and adds their extents for particles that stay within `motion`.
     void set_labels(std::vector<BodyLabel> labels, std::span<const MotionBounds> motion,
                     std::vector<Drawn>& drawn);
@@ -93,6 +94,7 @@ class Overlay {
     bool scale_bar_;
     bool legend_;
     std::optional<ColorScale> scale_;
+    double energy_scale_j_ = 0.0;
     std::vector<BodyLabel> labels_;
     Color color_;
     Insets panel_;  ///< space taken by the plots

@@ -29,7 +29,7 @@ constexpr double kAboveBox = 1.1;  // from the baseline above it
 constexpr double kMinBox = 4.0;
 constexpr double kMinPanelWidth = 9.5;
 constexpr double kMinPanelHeight = 13.0;
-constexpr double kMinRowWidth = 12.0;  // of panels beside each other below the picture
+constexpr double kMinRowWidth = 12.0;  // of panels in a row below the picture
 constexpr double kTight = 0.85;        // of the height in a column, for the smallest texts
 constexpr int kMaxNameRows = 3;
 constexpr double kPerLabel = 3.0;  // of the height
@@ -68,7 +68,7 @@ PlotLayout lay_out_plots(std::size_t count, int width_px, int height_px) {
     const bool is_beside = width_px > height_px;
     const int em_px = em_of(width_px, height_px);
     const int all_px = std::max(width_px, height_px);   // along which the picture makes room
-    const int side_px = std::min(width_px, height_px);  // along which panels stand beside each other
+    const int side_px = std::min(width_px, height_px);  // along which panels stand in line
     const double least_em = is_beside ? kMinPanelWidth : kMinPanelHeight;
     const double least_side_em = is_beside ? kMinPanelHeight : kMinRowWidth;
     const auto lay_out = [&](int shown, int lines, double smallest) {

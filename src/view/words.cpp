@@ -6,7 +6,7 @@
 namespace corda::view {
 namespace {
 
-/// Texts in the order of Language. "{}" stands for what is filled in.
+/// Texts in the order of Language. "{}" stands for a text that is filled in.
 constexpr std::string_view kWords = R"(
 energy|Energie|energia|energía|énergie
 kinetic|kinetisch|cinética|cinética|cinétique

@@ -120,17 +120,14 @@ TEST_F(Output, ColumnsHaveTheLabelsOfTheirBodies) {
     const std::string scene =
         folder_.write("labels.toml", "schema = 1\n[world]\nduration = 0.1\n" + rope + "label = \"8 kg\"\n" +
                                          rope + rope + "label = '8 kg'\n" + rope + "label = 'a,\"b\"'\n");
-    const auto header = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> arguments{"simulate", scene, "-o", "-", "--tension"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        const std::string out = run_corda(arguments).out;
-        return out.substr(0, out.find('\n'));
-    };
-    EXPECT_EQ(header({}),
-              "t,8_kg_x0,8_kg_y0,8_kg_x1,8_kg_y1,x2,y2,x3,y3,8_kg_2_x4,8_kg_2_y4,8_kg_2_x5,8_kg_2_y5,"
-              "\"a,\"\"b\"\"_x6\",\"a,\"\"b\"\"_y6\",\"a,\"\"b\"\"_x7\",\"a,\"\"b\"\"_y7\","
-              "8_kg_tension0_n,tension1_n,8_kg_2_tension2_n,\"a,\"\"b\"\"_tension3_n\"");
-    EXPECT_THAT(header({"--velocity", "--decimal", "comma"}), HasSubstr(";8_kg_2_vy5_m_s;"));
+    const std::vector<std::string> arguments{"simulate", scene, "-o", "-", "--tension"};
+    EXPECT_THAT(run_corda(arguments).out,
+                testing::StartsWith(
+                    "t,8_kg_x0,8_kg_y0,8_kg_x1,8_kg_y1,x2,y2,x3,y3,8_kg_2_x4,8_kg_2_y4,8_kg_2_x5,8_kg_2_y5,"
+                    "\"a,\"\"b\"\"_x6\",\"a,\"\"b\"\"_y6\",\"a,\"\"b\"\"_x7\",\"a,\"\"b\"\"_y7\","
+                    "8_kg_tension0_n,tension1_n,8_kg_2_tension2_n,\"a,\"\"b\"\"_tension3_n\"\n"));
+    EXPECT_THAT(run_corda({"simulate", scene, "-o", "-", "--velocity", "--decimal", "comma"}).out,
+                HasSubstr(";8_kg_2_vy5_m_s;"));
 }
 
 TEST_F(Output, SimulateAddsVelocitiesTensionsAndEnergy) {

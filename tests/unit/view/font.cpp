@@ -73,8 +73,7 @@ TEST(FallbackFonts, AreAdvisedWhereTheyWouldHelp) {
                 testing::HasSubstr("install fonts-noto-cjk fonts-noto-core)"));
     EXPECT_EQ(missing_glyph("\u0378\u0379"),
               "no font of this machine has U+0378, U+0379; install one (Debian: apt-get install "
-              "fonts-noto-core), or "
-              "leave these characters out");
+              "fonts-noto-core), or leave these characters out");
 }
 
 TEST(Fonts, HaveDigitsOfOneWidth) {

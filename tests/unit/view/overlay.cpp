@@ -93,10 +93,13 @@ TEST(Overlays, ShowEnergiesWithoutAnErrorInTheUnitOfTheScene) {
     def.scale_bar = false;
     def.energy = true;
     const auto text = [&](double kinetic_j, double potential_j, double scale_j) {
-        Caption caption{1.0, {}, {}};
-        caption.energy = Energy{kinetic_j, potential_j, 0.0};
-        caption.energy_scale_j = scale_j;
-        return drawn(def, caption, 640, 360).texts.back().utf8;
+        Overlay overlay(def, {}, 640, 360, 0.02);
+        overlay.set_energy_scale(scale_j);
+        DrawList list;
+        list.width = 640;
+        list.height = 360;
+        overlay.draw({1.0, {}, {}, {}, Energy{kinetic_j, potential_j, 0.0}}, 100.0, list);
+        return list.texts.back().utf8;
     };
     EXPECT_EQ(text(1.2345, -0.5, 9.0), "kinetic 1.23 J, potential −0.50 J");
     EXPECT_EQ(text(0.0, 0.0, 9.0), "kinetic 0.00 J, potential 0.00 J");

@@ -66,7 +66,7 @@ TEST(Words, AreThoseOfTheOverlay) {
               "t = 1,25 s|20 cm|Energiefehler 3,1·10⁻¹²|Zugkraft (N)|0|0,25|0,5|");
     Caption caption{0.5, {}, {}};
     caption.energy = Energy{1.25, -0.5, 0.0};
-    caption.energy_scale_j = 3.0;
+    overlay.set_energy_scale(3.0);
     EXPECT_NE(words(caption).find("|kinetisch 1,25 J, potenziell −0,50 J|"), std::string::npos);
 }
 
