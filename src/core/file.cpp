@@ -41,6 +41,12 @@ std::size_t read_bytes(const FileHandle& file, const std::string& path, char* by
     return read;
 }
 
+std::string first_bytes(const std::string& path, std::size_t count) {
+    std::string bytes(count, '\0');
+    bytes.resize(read_bytes(open_for_reading(path), path, bytes.data(), count));
+    return bytes;
+}
+
 std::uintmax_t file_size(const std::string& path) {
     std::error_code failure;
     const std::uintmax_t bytes = std::filesystem::file_size(path, failure);

@@ -28,7 +28,10 @@ void check_path(const std::string& path);
 [[nodiscard]] std::size_t read_bytes(const FileHandle& file, const std::string& path, char* bytes,
                                      std::size_t count);
 
-/// The bytes of an ordinary file. Throws corda::Error (kIo).
+/// The first `count` bytes of a file, or all that it has. Throws corda::Error (kIo).
+[[nodiscard]] std::string first_bytes(const std::string& path, std::size_t count);
+
+/// The size in bytes of an ordinary file. Throws corda::Error (kIo).
 [[nodiscard]] std::uintmax_t file_size(const std::string& path);
 
 /// Owns an open file descriptor.

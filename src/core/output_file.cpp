@@ -331,4 +331,10 @@ std::string OutputFile::keep() {
     return is_renamed ? part : kept;
 }
 
+void save_file(const std::string& path, std::string_view bytes, const OutputOptions& options) {
+    OutputFile file(path, options);
+    file.write(bytes);
+    file.commit();
+}
+
 }  // namespace corda

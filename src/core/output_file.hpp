@@ -116,6 +116,10 @@ class OutputFile {
     Descriptor descriptor_;
 };
 
+/// Writes a whole OutputFile.
+void save_file(const std::string& path, std::string_view bytes,
+               const OutputOptions& options = {.force = true});
+
 /// Exists while results are saved under their names. A signal lets this be completed: flushing to a slow disk
 /// may take seconds. Safe to ask for in a signal handler.
 class Saving {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -57,6 +59,13 @@ struct VideoDef {
     /// How often a GIF, APNG or WebP plays, 0 .. kMaxLoop; 0: for ever.
     int loop = 0;
     EncoderDef encoder;
+
+    /// Gives the longer side this length, and keeps the shape.
+    void scale_to(int longest_px) {
+        const double scale = 1.0 * longest_px / std::max(width_px, height_px);
+        for (int* const px : {&width_px, &height_px})
+            *px = std::max(1, static_cast<int>(std::lround(scale * *px)));
+    }
 
     /// Frames per second of the scene: fps / speed. Requires that is_rate().
     [[nodiscard]] FrameRate scene_rate() const { return FrameRate(scene_fraction()); }

@@ -17,13 +17,13 @@ extern "C" {
 #include <libavutil/sha.h>
 }
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/loaded_function.hpp"
 #include "corda/core/rational.hpp"
 
 namespace corda::media {
@@ -37,32 +37,9 @@ void load_libav();
 /// throws, and kEncoder if there is no such function.
 [[nodiscard]] void* find_libav_function(const char* name);
 
-/// A function of libavformat or libavcodec, found when it is first called. Calling it throws what
-/// find_libav_function() throws.
-template <class Result, class... Arguments>
-class LibavFunction {
-  public:
-    constexpr explicit LibavFunction(const char* name) : name_(name) {}
-
-    Result operator()(Arguments... arguments) const {
-        Pointer function = function_;
-        if (function == nullptr) function_ = function = reinterpret_cast<Pointer>(find_libav_function(name_));
-        return function(arguments...);
-    }
-
-  private:
-    using Pointer = Result (*)(Arguments...);
-
-    const char* name_;
-    mutable std::atomic<Pointer> function_ = nullptr;
-};
-
-/// Without a definition: gives the type for a function.
-template <class Result, class... Arguments>
-LibavFunction<Result, Arguments...> libav_function(Result (*)(Arguments...));
-
 // Within this namespace these names stand for libav's own, which the program is not linked with.
-#define CORDA_LIBAV(name) inline constinit const decltype(libav_function(&::name)) name(#name)
+#define CORDA_LIBAV(name) \
+    inline constinit const decltype(loaded_function<&find_libav_function>(&::name)) name(#name)
 CORDA_LIBAV(av_find_best_stream);
 CORDA_LIBAV(av_find_input_format);
 CORDA_LIBAV(av_guess_format);
@@ -108,7 +85,7 @@ CORDA_LIBAV(avio_context_free);
 CORDA_LIBAV(avio_flush);
 #undef CORDA_LIBAV
 
-/// Deleter for libav's `void free(T**)`; `kFree` points to it or to its LibavFunction.
+/// Deleter for libav's `void free(T**)`; `kFree` points to it or to its LoadedFunction.
 template <auto kFree>
 struct PointerPointerDeleter {
     template <typename T>

@@ -287,10 +287,7 @@ std::vector<double> write_figure(const std::string& path, Film& film, const Figu
         write_png(path, draw(film, def, empty_s), info, options);
         return empty_s;
     }
-    const std::string bytes = vector_bytes(ending, film, def, info, empty_s);
-    OutputFile file(path, options);
-    file.write(bytes);
-    file.commit();
+    save_file(path, vector_bytes(ending, film, def, info, empty_s), options);
     return empty_s;
 }
 

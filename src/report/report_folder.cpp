@@ -34,9 +34,7 @@ std::string ReportFolder::path_of(const std::string& name) const {
 
 void ReportFolder::write(const std::string& name, const std::string& bytes) {
     const std::string path = path_of(name);
-    OutputFile output(path, options_);
-    output.write(bytes);
-    output.commit();
+    save_file(path, bytes, options_);
     note(path);
 }
 

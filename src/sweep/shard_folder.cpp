@@ -207,16 +207,12 @@ std::string manifest_path(const std::string& folder) {
 
 std::optional<std::string> read_plain_file(const std::string& path) {
     if (!is_plain(path) || file_size(path) > kMaxFileBytes) return std::nullopt;
-    std::string text(file_size(path), '\0');
-    text.resize(read_bytes(open_for_reading(path), path, text.data(), text.size()));
-    return text;
+    return first_bytes(path, file_size(path));
 }
 
 void write_plain_file(const std::string& path, std::string_view text) {
     refuse_unusual(path);
-    OutputFile file(path, {.force = true});
-    file.write(text);
-    file.commit();
+    save_file(path, text);
 }
 
 void open_folder(const SweepDef& sweep, const std::string& folder, bool force) {

@@ -186,10 +186,7 @@ std::optional<Manifest> read_manifest(const std::string& folder) {
     if (fs::symlink_status(path, ignored).type() != fs::file_type::regular)
         throw Error(ExitCode::kMismatch, fmt::format("'{}' is no ordinary file; {}", path, kRemedy));
     try {
-        const FileHandle file = open_for_reading(path);
-        std::string text(kMaxJsonBytes + 1, '\0');
-        text.resize(read_bytes(file, path, text.data(), text.size()));
-        const auto manifest = parse_untrusted_json(text).get<Manifest>();
+        const auto manifest = parse_untrusted_json(first_bytes(path, kMaxJsonBytes + 1)).get<Manifest>();
         const bool can_be = manifest.fps.is_rate() && manifest.first >= 0 && manifest.first < manifest.end &&
                             manifest.end <= CheckedVideo::kNoEnd && manifest.per_chunk >= 1 &&
                             manifest.per_chunk <= kMaxPerChunk;
@@ -236,9 +233,7 @@ ChunkFolder::ChunkFolder(std::string path, Use use, Manifest manifest)
             throw Error(ExitCode::kUsage, fmt::format("'{}' has chunks of another render", path_));
         return;
     }
-    OutputFile file(manifest_path(path_), {.force = true});
-    file.write(Json(manifest_).dump(1) + "\n");
-    file.commit();
+    save_file(manifest_path(path_), Json(manifest_).dump(1) + "\n");
 }
 
 bool is_sound(const ChunkFile& file, const Manifest& manifest) {

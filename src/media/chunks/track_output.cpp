@@ -145,9 +145,7 @@ bool TrackOutput::has_old_header() const {
 }
 
 void TrackOutput::renew_header(const std::string& what) {
-    std::string file(kMaxMatroskaHeader, '\0');
-    file.resize(read_bytes(open_for_reading(path_), path_, file.data(), file.size()));
-    const std::string renewed = with_new_matroska_header(std::move(file));
+    const std::string renewed = with_new_matroska_header(first_bytes(path_, kMaxMatroskaHeader));
     check_libav(::lseek(descriptor_, 0, SEEK_SET) < 0 ? AVERROR(errno) : 0, kIo, what);
     check_libav(AVERROR(write_all(descriptor_, renewed)), kIo, what);
     check_libav(::lseek(descriptor_, 0, SEEK_END) < 0 ? AVERROR(errno) : 0, kIo, what);

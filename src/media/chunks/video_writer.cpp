@@ -175,9 +175,7 @@ class PictureSink : public VideoSink {
     [[nodiscard]] std::int64_t frames() const override { return frames_; }
     void add(std::int64_t /*number*/, Chunk chunk) override {
         for (const Packet& packet : chunk.packets) {
-            OutputFile file(picture_name(pattern_, first_ + frames_), {.force = force_});
-            file.write(bytes_of(*packet));
-            file.commit();
+            save_file(picture_name(pattern_, first_ + frames_), bytes_of(*packet), {.force = force_});
             ++frames_;
         }
     }

@@ -46,13 +46,6 @@ bool has_at(std::string_view head, std::size_t offset, std::string_view bytes) {
     return head.size() >= offset && head.substr(offset).starts_with(bytes);
 }
 
-std::string first_bytes(const std::string& path, std::size_t count) {
-    const FileHandle file = open_for_reading(path);
-    std::string head(count, '\0');
-    head.resize(read_bytes(file, path, head.data(), head.size()));
-    return head;
-}
-
 }  // namespace
 
 const ForeignKind* foreign_kind(std::string_view head) {

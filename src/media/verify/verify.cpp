@@ -137,10 +137,7 @@ void check_comment(const DecodedVideo& video, VerifyReport& report) {
 /// The container of a kind of file, in words.
 std::string container_of(const std::string& kind, const std::string& path) {
     if (kind != "matroska") return kind;
-    const FileHandle file = open_for_reading(path);
-    std::string head(64, '\0');
-    head.resize(read_bytes(file, path, head.data(), head.size()));
-    return head.find("webm") != std::string::npos ? "webm" : "matroska";
+    return first_bytes(path, 64).find("webm") != std::string::npos ? "webm" : "matroska";
 }
 
 /// The problem of a file of no known kind.
