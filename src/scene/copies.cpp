@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
+#include "corda/core/cancel.hpp"
 #include "corda/core/direction.hpp"
 #include "corda/scene/document.hpp"
 #include "corda/scene/field.hpp"
@@ -47,24 +49,37 @@ toml::table turned_table(const toml::table& rope, const RopeDef& def, double ang
     return table;
 }
 
-/// Adds the copies of a rope after it.
-void add_copies(const toml::table& rope, const std::string& path, Problems& problems, toml::array& ropes) {
-    const TableReader reader(problems, rope, "rope", path);
-    const TableReader copies = reader.table("copies");
-    CopiesDef wanted;
-    read_fields(copies, wanted);
-    const auto size = read_rope_size(reader, 1);
-    if (!size) return;
-    if (wanted.count * size->particles > Limits::kParticles) {
-        copies.add_problem(
-            fmt::format("{} copies of {} particles are over the limit of {} particles; make fewer",
-                        wanted.count, size->particles, Limits::kParticles));
-        return;
+CopiesDef copies_of(const TableReader& rope) {
+    CopiesDef copies;
+    read_fields(rope.table("copies"), copies);
+    return copies;
+}
+
+/// Adds a problem if there are too many particles in all ropes with copies, of which none is made yet.
+void check_sum(const std::vector<TableReader>& ropes) {
+    std::int64_t sum = 0;
+    for (const TableReader& rope : ropes) {
+        const auto size = rope.has("copies") ? read_rope_size(rope, 1) : std::nullopt;
+        if (!size) continue;
+        const int count = copies_of(rope).count;
+        const std::int64_t before = std::exchange(sum, sum + count * size->particles);
+        if (sum <= Limits::kParticles) continue;
+        const std::string with = before == 0 ? "" : fmt::format(", with {} of ropes before it,", before);
+        return rope.table("copies").add_problem(
+            fmt::format("{} copies of {} particles{} are over the limit of {} particles; make fewer", count,
+                        size->particles, with, Limits::kParticles));
     }
+}
+
+/// Adds the copies of a rope after it.
+void add_copies(const toml::table& table, const TableReader& rope, Problems& problems, toml::array& ropes) {
+    const CopiesDef copies = copies_of(rope);
     ShapeDef shape;
-    const RopeDef def = read_rope(reader, size, 1, shape);
-    if (!problems.empty()) return;
-    for (int k = 1; k < wanted.count; ++k) ropes.push_back(turned_table(rope, def, k * wanted.angle_deg));
+    const RopeDef def = read_rope(rope, read_rope_size(rope, 1), 1, shape);
+    for (int k = 1; k < copies.count && problems.empty(); ++k) {
+        check_cancelled();
+        ropes.push_back(turned_table(table, def, k * copies.angle_deg));
+    }
 }
 
 }  // namespace
@@ -72,15 +87,17 @@ void add_copies(const toml::table& rope, const std::string& path, Problems& prob
 void expand_copies(toml::table& document, Problems& problems) {
     toml::array* const given = document["rope"].as_array();
     if (given == nullptr || !problems.empty()) return;
+    check_sum(TableReader(problems, document, "", "").tables("rope"));
+    if (!problems.empty()) return;
     toml::array ropes;
     std::vector<std::size_t> file_index;
     for (std::size_t i = 0; i < given->size(); ++i) {
         toml::table& rope = *given->get(i)->as_table();
         ropes.push_back(std::move(rope));
         toml::table& kept = *ropes.back().as_table();
-        if (kept.contains("copies")) {
-            add_copies(kept, fmt::format("rope[{}]", i), problems, ropes);
-        }
+        if (kept.contains("copies"))
+            add_copies(kept, TableReader(problems, kept, "rope", fmt::format("rope[{}]", i)), problems,
+                       ropes);
         file_index.resize(ropes.size(), i);
     }
     given->clear();  // it keeps its place in the file

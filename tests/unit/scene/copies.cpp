@@ -1,6 +1,7 @@
 // Ropes with copies, as the scene file gives them.
 #include <gmock/gmock.h>
 
+#include "corda/core/cancel.hpp"
 #include "corda/scene/write_scene.hpp"
 #include "unit/scene/support.hpp"
 
@@ -78,6 +79,23 @@ TEST(SceneCopies, HaveTheProblemsOfTheirRopeOnce) {
                 HasSubstr("rope[0].points[1]: with the origin it is at [1100000000"));
     EXPECT_THAT(message_of("line = { particles = 500000, step = [0, -1] }" + std::string(kThree)),
                 HasSubstr("rope[0].copies: 3 copies of 500000 particles are over the limit"));
+}
+
+TEST(SceneCopies, AreCountedTogetherBeforeTheyAreMade) {
+    const std::string one =
+        "line = { particles = 100, step = [0.0, -0.01] }\ncopies = { count = 9000, angle_deg = 0.001 }\n";
+    EXPECT_THAT(message_of(one + "[[rope]]\n" + one),
+                HasSubstr("rope[1].copies: 9000 copies of 100 particles, with 900000 of ropes before it, are "
+                          "over the limit of 1000000 particles; make fewer"));
+}
+
+TEST(SceneCopies, AreMadeUntilCancelled) {
+    int checks = 0;
+    const CancelScope scope([&] { return ++checks < 100; });
+    EXPECT_THROW(static_cast<void>(with_copies(
+                     "line = { particles = 2, step = [0, -1] }\ncopies = { count = 9000, angle_deg = 1 }\n")),
+                 Error);
+    EXPECT_EQ(checks, 100);
 }
 
 }  // namespace
