@@ -51,7 +51,8 @@ ExitCode sweep(const Console& console, const SweepOptions& options) {
     if (options.folder == "-")
         throw Error(ExitCode::kUsage, "-o -: a sweep has several files; give a folder");
     const sweep::SweepDef def = sweep::load_sweep(options.path);
-    for (const std::string& columns : options.plots) figures::check_sweep_plot(def, columns);
+    for (const std::string& columns : options.plots)
+        static_cast<void>(figures::sweep_plot_titles(def, columns));
     if (options.checks) return check(console, def, options);
     sweep::RunDef how;
     how.folder = options.folder;

@@ -74,13 +74,6 @@ report::Table largest_table(const Film& film, const MotionSummary& motion) {
     return table;
 }
 
-std::string times_text(const std::vector<double>& times_s) {
-    std::string text;
-    for (std::size_t i = 0; i < times_s.size(); ++i)
-        text += fmt::format("{}{:.4g}", i == 0 ? "" : i + 1 == times_s.size() ? " and " : ", ", times_s[i]);
-    return text + " s";
-}
-
 void add_pictures(const Film& film, const FigureTimes& times, const WritePoses& write,
                   report::Chapter& chapter) {
     const std::string name = printable(film.scene().name);
@@ -115,10 +108,10 @@ std::vector<pipeline::TrackedParticle> followed_of(const MotionSummary& motion) 
     return followed;
 }
 
-/// Whether all bodies turn about their pins: near a point, the angle about it has no meaning.
-bool all_turn(const System& system, const MotionSummary& motion) {
+/// How many bodies turn about their pins: near a point, the angle about it has no meaning.
+std::ptrdiff_t turning_count(const System& system, const MotionSummary& motion) {
     constexpr double kNear = 0.1;
-    return std::all_of(motion.bodies.begin(), motion.bodies.end(), [&](const BodyCurves& body) {
+    return std::count_if(motion.bodies.begin(), motion.bodies.end(), [&](const BodyCurves& body) {
         const double length_m = links_length_m(system, system.bodies[body.followed.body]);
         return body.followed.pin && body.followed.is_free_end && body.nearest_m >= kNear * length_m;
     });
@@ -261,7 +254,15 @@ report::Chapter angle_chapter(const Film& film, const MotionSummary& motion) {
     report::Chapter chapter;
     chapter.title = "Angle";
     const System& system = film.system();
-    if (motion.bodies.empty() || !all_turn(system, motion)) return chapter;
+    const std::ptrdiff_t turning = turning_count(system, motion);
+    if (turning == 0) return chapter;
+    if (turning < std::ssize(motion.bodies)) {
+        chapter.summary = fmt::format(
+            "There is no figure of the angle: the free ends of {} of the {} bodies do not "
+            "turn about one pin, or come near to it.",
+            std::ssize(motion.bodies) - turning, motion.bodies.size());
+        return chapter;
+    }
     std::vector<Curve> curves = curves_of(film.scene(), system, motion, &BodyCurves::turning);
     for (Curve& curve : curves)
         for (view::CurvePoint& point : curve.points)
@@ -280,7 +281,7 @@ report::Chapter phase_chapter(const Film& film, const MotionSummary& motion) {
     chapter.title = "Phase portrait";
     if (motion.bodies.empty()) return chapter;
     const System& system = film.system();
-    const bool turns = all_turn(system, motion);
+    const bool turns = turning_count(system, motion) == std::ssize(motion.bodies);
     const auto curve = turns ? &BodyCurves::turning : &BodyCurves::phase;
     const std::vector<Curve> curves = curves_of(film.scene(), system, motion, curve);
     report::Plot plot =

@@ -12,6 +12,7 @@
 #include "corda/core/cancel.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
+#include "corda/figures/chart.hpp"
 #include "corda/figures/drawings.hpp"
 #include "corda/figures/motion_summary.hpp"
 #include "corda/figures/period_theory.hpp"
@@ -19,6 +20,7 @@
 #include "corda/pipeline/film_renderer.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/report/writers.hpp"
+#include "corda/scene/schema.hpp"
 #include "corda/view/font.hpp"
 #include "corda/view/number_text.hpp"
 
@@ -47,8 +49,19 @@ struct SweepColumn {
             unit = its_unit;
             break;
         }
+        if (const scene::Key* const key = is_summary || !unit.empty() ? nullptr : schema_key())
+            unit = key->unit;
         std::replace(text.begin(), text.end(), '_', ' ');
         return unit.empty() ? text : fmt::format("{} ({})", text, unit);
+    }
+
+    /// The schema row of a varied key; null if there is none.
+    [[nodiscard]] const scene::Key* schema_key() const {
+        std::string section =
+            name.substr(0, name.size() - std::min(name.size(), short_name(name).size() + 1));
+        for (std::size_t open; (open = section.find('[')) != std::string::npos;)
+            section.erase(open, section.find(']', open) + 1 - open);
+        return scene::find_key(section, short_name(name));
     }
 
     [[nodiscard]] std::optional<double> value(const sweep::SampleRow& row) const {
@@ -248,10 +261,7 @@ Cell cell_of(const sweep::SweepDef& sweep, std::int64_t number, int side_px) {
                                                  ? view::display_number(value.get<double>(), 4)
                                                  : printable(sweep::value_text(value))));
         Scene scene = sweep::scene_of(sweep, parameters);
-        VideoDef& video = scene.video;
-        const double scale = 1.0 * side_px / std::max(video.width_px, video.height_px);
-        for (int* const side : {&video.width_px, &video.height_px})
-            *side = std::max(1, static_cast<int>(std::lround(scale * *side)));
+        scene.video.scale_to(side_px);
         scene.overlay = {};
         Film film(scene, film_def(scene));
         const auto no_rows = [](const std::string&, const std::vector<std::string>&) -> OnRow {
@@ -259,6 +269,7 @@ Cell cell_of(const sweep::SweepDef& sweep, std::int64_t number, int side_px) {
         };
         const FigureTimes times = find_figure_times(film, read_motion(film, no_rows, {}), {});
         const std::vector<double>& times_s = times.strobe_s;
+        cell.lines.push_back("t = " + times_text(times_s));
         cell.image = render::render_reference(FilmRenderer::list_poses(film, times_s));
     } catch (const Error& error) {
         if (!sweep::is_refusal(error.code())) throw;
@@ -267,16 +278,12 @@ Cell cell_of(const sweep::SweepDef& sweep, std::int64_t number, int side_px) {
     return cell;
 }
 
-void write_file(const std::string& path, std::string_view bytes) {
-    OutputFile file(path, {.force = true});
-    file.write(bytes);
-    file.commit();
-}
-
 }  // namespace
 
-void check_sweep_plot(const sweep::SweepDef& sweep, const std::string& columns) {
-    static_cast<void>(find_columns(sweep, columns));
+std::pair<std::string, std::string> sweep_plot_titles(const sweep::SweepDef& sweep,
+                                                      const std::string& columns) {
+    const auto [y, x] = find_columns(sweep, columns);
+    return {y.title(), x.title()};
 }
 
 std::vector<std::string> write_sweep_plot(const sweep::SweepDef& sweep, const std::string& folder,
@@ -288,8 +295,8 @@ std::vector<std::string> write_sweep_plot(const sweep::SweepDef& sweep, const st
     const auto stem = std::filesystem::path(folder) / (file_name(sweep, y) + "-" + file_name(sweep, x));
     std::vector<std::string> paths;
     for (const auto format : {report::PlotFormat::kSvg, report::PlotFormat::kPdf, report::PlotFormat::kPng})
-        write_file(paths.emplace_back(stem.string() + "." + report::ending(format)),
-                   report::draw_plot(plot, format, report::kPageMm));
+        save_file(paths.emplace_back(stem.string() + "." + report::ending(format)),
+                  report::draw_plot(plot, format, report::kPageMm));
     report::Table table{
         "plot",
         plot.title,
@@ -299,7 +306,7 @@ std::vector<std::string> write_sweep_plot(const sweep::SweepDef& sweep, const st
     for (const Point& point : all.points)
         table.add(
             {point.key, all.series[point.series].name, point.x, point.y, report::cell_of(point.theory)});
-    write_file(paths.emplace_back(stem.string() + ".csv"), report::csv_text(table));
+    save_file(paths.emplace_back(stem.string() + ".csv"), report::csv_text(table));
     return paths;
 }
 
@@ -348,7 +355,7 @@ std::string write_sweep_sheet(const sweep::SweepDef& sweep, const std::string& f
             std::copy_n(image.pixel(0, row), image.row_bytes(), sheet.pixel(x_px, y_px + row));
     }
     std::string path = (std::filesystem::path(folder) / "sheet.png").string();
-    write_file(path, media::png_bytes(sheet, {}));
+    save_file(path, media::png_bytes(sheet, {}));
     return path;
 }
 

@@ -1,14 +1,17 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "corda/sweep/sweep.hpp"
 
 namespace corda::figures {
 
-/// Throws corda::Error (kUsage) unless a sweep has the columns of the plot "Y:X".
-void check_sweep_plot(const sweep::SweepDef& sweep, const std::string& columns);
+/// The titles of the axes y and x of the plot "Y:X", with units. Throws corda::Error (kUsage) unless a sweep
+/// has these columns.
+std::pair<std::string, std::string> sweep_plot_titles(const sweep::SweepDef& sweep,
+                                                      const std::string& columns);
 
 /// Writes the plot "Y:X" of the finished samples of a sweep as `<folder>/<y>-<x>` .svg, .pdf, .png and .csv.
 /// X and Y are columns of metadata.csv that hold numbers: a figure of the summary, or a varied key, of which

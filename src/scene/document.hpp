@@ -39,9 +39,10 @@ struct KeyStep {
 [[nodiscard]] std::optional<std::vector<KeyStep>> parse_key(std::string_view key);
 
 /// Puts `setting` into the document, making missing tables on its way. What it puts there has the setting
-/// itself as its source, so that messages about it name the setting. One that does not fit the document is a
-/// problem. Throws corda::Error (kUsage) if it is not key=value.
-void apply_setting(toml::table& document, const Setting& setting, Problems& problems);
+/// itself, or `place`, as its source, so that messages about it name that. One that does not fit the document
+/// is a problem. Throws corda::Error (kUsage) if it is not key=value.
+void apply_setting(toml::table& document, const Setting& setting, Problems& problems,
+                   const std::string& place = "");
 
 /// Checks a document against the schema: unknown and missing keys, types, ranges and keys of other methods.
 /// Bad values are taken out of the document, so that their defaults stand in for them.

@@ -15,15 +15,16 @@
 namespace corda::scene {
 namespace {
 
-[[noreturn]] void fail_io(const std::string& path, int reason) {
+[[noreturn]] void fail_io(const std::string& path, std::string_view what, int reason) {
     if (reason == EINTR) {
-        throw Error(ExitCode::kInterrupted, fmt::format("{}: interrupted while waiting for the scene", path));
+        throw Error(ExitCode::kInterrupted,
+                    fmt::format("{}: interrupted while waiting for the {}", path, what));
     }
     const bool is_denied = reason == EACCES || reason == EPERM;
-    throw Error(
-        ExitCode::kIo,
-        fmt::format("{}: cannot read the scene file: {}; {}", path, std::generic_category().message(reason),
-                    is_denied ? hint_for_errno(reason, FileUse::kRead) : "give the path of a TOML file"));
+    throw Error(ExitCode::kIo, fmt::format("{}: cannot read the {} file: {}; {}", path, what,
+                                           std::generic_category().message(reason),
+                                           is_denied ? hint_for_errno(reason, FileUse::kRead)
+                                                     : "give the path of a TOML file"));
 }
 
 /// Standard input stays open: closing it would give its number to the next file.
@@ -33,17 +34,17 @@ FileHandle open(const std::string& path) {
 
 }  // namespace
 
-std::string read_file(const std::string& path) {
+std::string read_file(const std::string& path, std::string_view what) {
     check_path(path);
     const std::string name = source_name(path);
     const FileHandle file = open(path);
-    if (!file) fail_io(name, errno);
+    if (!file) fail_io(name, what, errno);
     std::string text;
     std::array<char, 65536> block{};
     while (true) {
         errno = 0;
         const std::size_t count = std::fread(block.data(), 1, block.size(), file.get());
-        if (count == 0 && std::ferror(file.get()) != 0) fail_io(name, errno);
+        if (count == 0 && std::ferror(file.get()) != 0) fail_io(name, what, errno);
         if (count == 0) return text;
         text.append(block.data(), count);
         check_file_bytes(name, text.size());

@@ -2,12 +2,13 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 namespace corda::scene {
 
-/// The bytes of a scene file or a pipe; "-" is standard input. Throws corda::Error: kIo with the system's
-/// reason, kInvalidScene if they are over Limits::kFileBytes.
-[[nodiscard]] std::string read_file(const std::string& path);
+/// The bytes of a scene file, or of a file that messages call `what`, or of a pipe; "-" is standard input.
+/// Throws corda::Error: kIo with the system's reason, kInvalidScene if they are over Limits::kFileBytes.
+[[nodiscard]] std::string read_file(const std::string& path, std::string_view what = "scene");
 
 /// Name of the file at `path` in messages.
 [[nodiscard]] std::string source_name(const std::string& path);

@@ -71,11 +71,12 @@ Scene load_scene(const std::string& path, const std::vector<Setting>& settings) 
     return parse_scene(read_file(path), source_name(path), settings);
 }
 
-Scene parse_scene(std::string_view toml, const std::string& source_name,
-                  const std::vector<Setting>& settings) {
+Scene parse_scene(std::string_view toml, const std::string& source_name, const std::vector<Setting>& settings,
+                  const PlacedSettings& more) {
     toml::table document = parse_document(toml, source_name);
     Problems problems(source_name, document);
     for (const Setting& setting : settings) apply_setting(document, setting, problems);
+    for (const Setting& setting : more.settings) apply_setting(document, setting, problems, more.place);
     check_document(document, problems);
     expand_copies(document, problems);
     check_cancelled();

@@ -138,9 +138,15 @@ using Setting = std::string;
 /// check_cancelled() is called some ten times a second in a scene of a million particles.
 [[nodiscard]] Scene load_scene(const std::string& path, const std::vector<Setting>& settings = {});
 
-/// The same for TOML text; `source_name` stands in the messages in place of the path.
+/// Settings that do not come from the command line; messages name `place` in place of --set.
+struct PlacedSettings {
+    std::string place;
+    std::vector<Setting> settings;
+};
+
+/// The same for TOML text; `source_name` stands in the messages in place of the path. `more` come last.
 [[nodiscard]] Scene parse_scene(std::string_view toml, const std::string& source_name,
-                                const std::vector<Setting>& settings = {});
+                                const std::vector<Setting>& settings = {}, const PlacedSettings& more = {});
 
 /// About how long computing the motion of a scene once may take and why, with a remedy, if that is more than
 /// a few seconds; otherwise empty. An upper estimate from the start alone.

@@ -20,12 +20,6 @@ std::string label_of(const Setting& setting) {
     return "--set " + excerpt(setting, kMaxLabel);
 }
 
-[[noreturn]] void fail_usage(const Setting& setting, std::string_view problem) {
-    throw Error(ExitCode::kUsage,
-                fmt::format("{}: {}; give --set key=value, e.g. --set video.fps=30 or --set rope[0].mass=2",
-                            label_of(setting), problem));
-}
-
 std::string_view trimmed(std::string_view text) {
     const std::size_t begin = text.find_first_not_of(kWhitespace);
     if (begin == std::string_view::npos) return {};
@@ -76,8 +70,7 @@ toml::table parse_value(std::string_view text, const std::string& label) {
 /// Walks down a document along the key of one setting.
 class SettingWriter {
   public:
-    SettingWriter(toml::table& document, const Setting& setting)
-        : node_(&document), label_(label_of(setting)) {}
+    SettingWriter(toml::table& document, std::string label) : node_(&document), label_(std::move(label)) {}
 
     void write(const std::vector<KeyStep>& steps, std::string_view text) {
         for (std::size_t i = 0; i + 1 < steps.size(); ++i) descend(steps[i], steps[i + 1].is_index());
@@ -170,17 +163,23 @@ std::optional<std::vector<KeyStep>> parse_key(std::string_view key) {
     }
 }
 
-void apply_setting(toml::table& document, const Setting& setting, Problems& problems) {
+void apply_setting(toml::table& document, const Setting& setting, Problems& problems,
+                   const std::string& place) {
+    const std::string label = place.empty() ? label_of(setting) : place;
+    const auto refuse = [&](std::string_view problem) {
+        const char* const advice =
+            place.empty() ? "; give --set key=value, e.g. --set video.fps=30 or --set rope[0].mass=2" : "";
+        throw Error(ExitCode::kUsage, fmt::format("{}: {}{}", label, problem, advice));
+    };
     const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos) fail_usage(setting, "there is no '='");
+    if (equals == std::string::npos) refuse("there is no '='");
     const std::string_view key = trimmed(std::string_view(setting).substr(0, equals));
-    if (key.empty()) fail_usage(setting, "the key is empty");
+    if (key.empty()) refuse("the key is empty");
     const auto steps = parse_key(key);
-    if (!steps) fail_usage(setting, fmt::format("\"{}\" is not a key", excerpt(key)));
-    if (steps->size() > static_cast<std::size_t>(kKeyParts))
-        fail_usage(setting, "the key has too many parts");
+    if (!steps) return refuse(fmt::format("\"{}\" is not a key", excerpt(key)));
+    if (steps->size() > static_cast<std::size_t>(kKeyParts)) refuse("the key has too many parts");
     try {
-        SettingWriter(document, setting).write(*steps, trimmed(std::string_view(setting).substr(equals + 1)));
+        SettingWriter(document, label).write(*steps, trimmed(std::string_view(setting).substr(equals + 1)));
     } catch (const Error& error) {
         problems.add(error.what());
     }

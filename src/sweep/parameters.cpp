@@ -98,7 +98,7 @@ std::vector<Setting> settings_of(const Parameters& parameters) {
 }
 
 Scene scene_of(const SweepDef& sweep, const Parameters& parameters) {
-    return parse_scene(sweep.scene_toml, sweep.scene_name, settings_of(parameters));
+    return parse_scene(sweep.scene_toml, sweep.scene_name, {}, {"vary", settings_of(parameters)});
 }
 
 std::string value_text(const Json& value) {

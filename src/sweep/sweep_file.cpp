@@ -430,7 +430,7 @@ void check_varied_keys(const SweepDef& sweep, const toml::table& vary, Problems&
     for (const VariedKey& varied : sweep.vary) {
         try {
             Problems misfits(sweep.scene_name);
-            scene::apply_setting(document, varied.key + "=0", misfits);
+            scene::apply_setting(document, varied.key + "=0", misfits, sweep.scene_name);
             misfits.throw_if_any();
         } catch (const Error& error) {
             problems.add(vary.get(varied.key)->source(), "vary." + Json(varied.key).dump(),
@@ -445,7 +445,7 @@ void check_varied_keys(const SweepDef& sweep, const toml::table& vary, Problems&
 SweepDef load_sweep(const std::string& path) {
     SweepDef sweep;
     sweep.source = scene::source_name(path);
-    const toml::table document = scene::parse_document(scene::read_file(path), sweep.source);
+    const toml::table document = scene::parse_document(scene::read_file(path, "sweep"), sweep.source);
     Problems problems(sweep.source, document);
     SweepReader(document, problems, sweep).read();
     problems.throw_if_any();
