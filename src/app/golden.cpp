@@ -51,12 +51,6 @@ std::string line_of(const Checked& picture, const GoldenOptions& options) {
     return line;
 }
 
-void write_text(const std::string& path, const std::string& text) {
-    OutputFile file(path, {.force = true});
-    file.write(text);
-    file.commit();
-}
-
 /// Prints failures, changes and totals.
 void tell(const Console& console, const GoldenOptions& options, const golden::SuiteResult& result) {
     nlohmann::json pictures = nlohmann::json::array();
@@ -162,9 +156,9 @@ ExitCode run_suite(const Console& console, GoldenOptions options) {
     const golden::SuiteResult result =
         options.def.accepted.empty() ? run_until_asked(options.def) : golden::accept(options.def);
     const CancelScope finishing({}, CancelScope::Outer::kIgnored);  // an update has been published
-    if (!options.junit.empty()) write_text(options.junit, golden::junit_xml(result));
-    if (!options.html.empty()) write_text(options.html, golden::page_html(result));
-    if (!options.markdown.empty()) write_text(options.markdown, golden::markdown(result));
+    if (!options.junit.empty()) save_file(options.junit, golden::junit_xml(result));
+    if (!options.html.empty()) save_file(options.html, golden::page_html(result));
+    if (!options.markdown.empty()) save_file(options.markdown, golden::markdown(result));
     tell(console, options, result);
     if (result.count(Verdict::kInvalid) > 0) return ExitCode::kInvalidScene;
     bool failed = std::any_of(result.pictures.begin(), result.pictures.end(),

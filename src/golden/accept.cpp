@@ -56,8 +56,9 @@ std::vector<NewPicture> new_pictures_in(const std::string& folder) {
         for (const Json& json : manifest.at("pictures")) {
             const auto text = [&](const char* key) { return json.at(key).get<std::string>(); };
             Checked picture{.scene = text("scene"), .name = text("name")};
-            if (fs::path(picture.name).filename() != picture.name || !picture.name.ends_with(kEnding))
-                throw Error(ExitCode::kUsage, picture.name + " is no name of a picture");
+            if (fs::path(picture.name).filename() != picture.name || !picture.name.ends_with(kEnding) ||
+                picture.name.find('\0') != std::string::npos)
+                throw Error(ExitCode::kUsage, printable(picture.name) + " is no name of a picture");
             picture.verdict =
                 text("result") == word_of(Verdict::kMissing) ? Verdict::kMissing : Verdict::kDifferent;
             picture.difference.same_size = false;  // its figures are not read
@@ -73,11 +74,16 @@ std::vector<NewPicture> new_pictures_in(const std::string& folder) {
     return pictures;
 }
 
-/// Why a picture does not belong to this scene and reference; empty if it does.
-std::string problem_of(const NewPicture& one, const Case& scene, const SuiteDef& def) {
+/// Why a picture of these bytes does not belong to this scene and reference; empty if it does.
+std::string problem_of(const NewPicture& one, const std::string& bytes, const Case& scene,
+                       const SuiteDef& def) {
     const Checked& picture = one.picture;
-    const std::string bytes = hash_of(picture.drawn_path);
-    if (bytes != one.hash) return "it was changed after corda golden --new wrote it";
+    if (hash_text(bytes) != one.hash) return "it was changed after corda golden --new wrote it";
+    try {
+        static_cast<void>(read_png(picture.drawn_path));
+    } catch (const Error& error) {
+        return fmt::format("it is no picture: {}", error.what());
+    }
     if (one.scene_hash != hash_of(scene, picture)) {
         std::vector<Setting> settings = scene.settings;
         for (const Setting& frozen :
@@ -87,7 +93,7 @@ std::string problem_of(const NewPicture& one, const Case& scene, const SuiteDef&
                scene_change(picture.drawn_path, load_scene(scene.path, settings), def.settings);
     }
     const std::string reference = hash_of(picture.reference);
-    const bool is_known = reference == one.reference_hash || reference == bytes;
+    const bool is_known = reference == one.reference_hash || reference == one.hash;
     return is_known ? "" : fmt::format("'{}' has changed since, or is another one", picture.reference);
 }
 
@@ -98,11 +104,7 @@ void publish(const std::string& folder, const Files& files, const std::vector<st
     const Saving saving;
     make_folder(folder);
     remove_leftovers(folder, [&](const std::string& name) { return files.contains(name); });
-    for (const auto& [name, bytes] : files) {
-        OutputFile file(join(folder, name), {.force = true});
-        file.write(bytes);
-        file.commit();
-    }
+    for (const auto& [name, bytes] : files) save_file(join(folder, name), bytes);
     for (const std::string& path : removed) {
         std::error_code failure;
         fs::remove(path, failure);
@@ -115,7 +117,8 @@ void write_new(const SuiteDef& def, const std::vector<Case>& cases, const Files&
     std::vector<std::string> removed;
     if (is_there(join(def.new_folder, kManifest)))
         for (const NewPicture& old : new_pictures_in(def.new_folder))
-            if (!files.contains(old.picture.name)) removed.push_back(old.picture.drawn_path);
+            if (!files.contains(old.picture.name) && hash_of(old.picture.drawn_path) == old.hash)
+                removed.push_back(old.picture.drawn_path);
     Json pictures = Json::array();
     for (const Case& one : cases) {
         for (const Checked& picture : one.pictures) {
@@ -141,12 +144,15 @@ SuiteResult accept(const SuiteDef& def) {
     strict.update = true;  // an invalid scene is an error
     std::vector<Checked> invalid;
     std::vector<std::string> stale;
-    std::vector<Case> cases = load_cases(strict, invalid, result.details);
+    std::vector<std::string> passed_over;
+    std::vector<Case> cases = load_cases(strict, invalid, passed_over);
     select(def, cases, stale, invalid);
+    tell_passed_over(passed_over, stale, result);
     std::map<std::string, std::pair<const Case*, const Checked*>> known;
     for (const Case& one : cases)
         for (const Checked& picture : one.pictures) known[picture.name] = {&one, &picture};
     Files files;
+    std::map<std::string, std::string> hashes;
     std::vector<std::string> problems;
     for (const std::string& folder : def.accepted) {
         for (NewPicture& one : new_pictures_in(folder)) {
@@ -155,12 +161,17 @@ SuiteResult accept(const SuiteDef& def) {
             if (!is_there(picture.drawn_path) || (asked != nullptr && !asked->selected)) continue;
             picture.reference = join(def.folder, picture.name);
             picture.time_s = asked == nullptr ? 0.0 : asked->time_s;
-            const std::string problem =
-                asked == nullptr ? "no scene asks for it" : problem_of(one, *scene, def);
+            std::string bytes = file_bytes(picture.drawn_path);
+            std::string problem =
+                asked == nullptr ? "no scene asks for it" : problem_of(one, bytes, *scene, def);
+            const auto [other, is_first] = hashes.emplace(picture.name, one.hash);
+            if (!is_first && other->second != one.hash)
+                problem = "another folder has another picture of this name";
             if (!problem.empty()) problems.push_back(picture.drawn_path + ": " + problem);
+            if (!is_first) continue;
             picture.changed = hash_of(picture.reference) != one.hash;
             if (!picture.changed) picture.verdict = Verdict::kPassed;
-            if (picture.changed) files[picture.name] = file_bytes(picture.drawn_path);
+            if (picture.changed) files[picture.name] = std::move(bytes);
             result.pictures.push_back(picture);
         }
     }

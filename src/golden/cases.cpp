@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <filesystem>
 #include <optional>
@@ -109,15 +110,6 @@ bool is_foreign(const std::string& path) {
     return !has_schema(file_bytes(path));
 }
 
-/// The provenance of a golden picture; empty if it cannot be read.
-Provenance provenance_of_file(const std::string& path) {
-    try {
-        return provenance_in(read_png_info(path));
-    } catch (const Error&) {
-        return {};
-    }
-}
-
 /// SCENE of a name SCENE_tSSSS_FFFFFF.png, as name_of() makes it; empty for other names.
 std::string scene_in_name(const std::string& name) {
     constexpr std::string_view kPattern = "_tdddd_dddddd.png";
@@ -141,23 +133,29 @@ bool Case::is_whole() const {
 void select(const SuiteDef& def, std::vector<Case>& cases, std::vector<std::string>& stale,
             std::vector<Checked>& invalid) {
     std::vector<bool> is_used(def.only.size());
-    std::vector<std::string_view> known;
+    std::set<std::string> known;
+    const auto names_of = [](const std::string& file, const std::string& scene) {
+        return std::array{file, fs::path(file).stem().string(), scene};
+    };
+    for (const Case& one : cases)
+        for (const Checked& picture : one.pictures)
+            for (const std::string& name : names_of(picture.name, picture.scene)) known.insert(name);
     const auto is_named = [&](const std::string& file, const std::string& scene) {
         bool is = def.only.empty();
         for (std::size_t i = 0; i < def.only.size(); ++i)
-            for (const std::string& name : {file, fs::path(file).stem().string(), scene})
-                if (fnmatch(def.only[i].c_str(), name.c_str(), 0) == 0) is = is_used[i] = true;
+            for (const std::string& name : names_of(file, scene))
+                // A name that exists is no pattern, even if it has characters of one.
+                if (name == def.only[i] ||
+                    (!known.contains(def.only[i]) && fnmatch(def.only[i].c_str(), name.c_str(), 0) == 0))
+                    is = is_used[i] = true;
         return is;
     };
     const auto is_in_shard = [&](std::size_t i) {
         return static_cast<std::int64_t>(i) % def.shard.count == def.shard.index;
     };
     for (std::size_t i = 0; i < cases.size(); ++i) {
-        known.push_back(cases[i].scene.name);
-        for (Checked& picture : cases[i].pictures) {
-            known.push_back(picture.name);
+        for (Checked& picture : cases[i].pictures)
             picture.selected = is_named(picture.name, picture.scene) && is_in_shard(i) && !def.stale_only;
-        }
     }
     std::size_t count = 0;
     std::erase_if(stale, [&](const std::string& path) {
@@ -170,7 +168,7 @@ void select(const SuiteDef& def, std::vector<Case>& cases, std::vector<std::stri
     });
     for (std::size_t i = 0; i < def.only.size(); ++i) {
         if (is_used[i]) continue;
-        const auto likely = nearest(def.only[i], known);
+        const auto likely = nearest(def.only[i], std::vector<std::string_view>(known.begin(), known.end()));
         throw Error(ExitCode::kUsage,
                     fmt::format("--only {}: no picture and no scene has this name{}", def.only[i],
                                 likely ? fmt::format("; did you mean {}?", *likely) : ""));
@@ -178,10 +176,15 @@ void select(const SuiteDef& def, std::vector<Case>& cases, std::vector<std::stri
 }
 
 std::string file_bytes(const std::string& path) {
-    const FileHandle file = open_for_reading(path);
-    std::string bytes(file_size(path), '\0');
-    bytes.resize(read_bytes(file, path, bytes.data(), bytes.size()));
-    return bytes;
+    return first_bytes(path, file_size(path));
+}
+
+Provenance provenance_of_file(const std::string& path) {
+    try {
+        return provenance_in(read_png_info(path));
+    } catch (const Error&) {
+        return {};
+    }
 }
 
 bool is_no_png(const std::string& path) {
@@ -209,7 +212,7 @@ std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid,
                     ExitCode::kInvalidScene,
                     fmt::format("{}: a link to nothing; restore that file, or remove the link", file));
             if (is_folder && is_foreign(file)) {
-                passed_over.push_back(file + ": passed over: no scene, as it has no schema = 1");
+                passed_over.push_back(file);
                 return std::nullopt;
             }
             return make_case(file, def, names);
@@ -244,6 +247,20 @@ std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid,
                                 "at = [0.0, 1.0]",
                                 def.paths.front()));
     return cases;
+}
+
+void tell_passed_over(const std::vector<std::string>& files, const std::vector<std::string>& stale,
+                      SuiteResult& result) {
+    for (const std::string& file : files) {
+        const bool has_stale = std::any_of(stale.begin(), stale.end(), [&](const std::string& path) {
+            return scene_in_name(fs::path(path).filename().string()) == fs::path(file).stem();
+        });
+        if (has_stale)
+            result.notes.push_back(fmt::format(
+                "{}: passed over, and its pictures are stale: it has no schema = 1; add this line", file));
+        else
+            result.details.push_back(file + ": passed over: no scene, as it has no schema = 1");
+    }
 }
 
 std::vector<std::string> references_in(const std::string& folder) {

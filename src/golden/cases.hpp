@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "corda/golden/suite.hpp"
+#include "corda/pipeline/provenance.hpp"
 
 namespace corda::golden {
 
@@ -25,9 +26,13 @@ struct Case {
 };
 
 /// The scenes of a suite; those that are invalid go to `invalid`, but for those of an update. TOML files of
-/// folders that are no scenes are told in `passed_over`. Throws corda::Error as run().
+/// folders that are no scenes go to `passed_over`. Throws corda::Error as run().
 [[nodiscard]] std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid,
                                            std::vector<std::string>& passed_over);
+
+/// Reports the files that were passed over: as a note if pictures are stale for it, else as a detail.
+void tell_passed_over(const std::vector<std::string>& files, const std::vector<std::string>& stale,
+                      SuiteResult& result);
 
 /// Leaves the pictures out that the suite does not ask for: those of `cases` stay, unselected. Throws
 /// corda::Error (kUsage) for a name of SuiteDef::only that is none.
@@ -48,6 +53,9 @@ void write_new(const SuiteDef& def, const std::vector<Case>& cases, const Files&
 
 /// The bytes of a file. Throws corda::Error (kIo).
 [[nodiscard]] std::string file_bytes(const std::string& path);
+
+/// The provenance of a golden picture; empty if it cannot be read.
+[[nodiscard]] Provenance provenance_of_file(const std::string& path);
 
 /// The pictures of the folder of references, sorted; none if there is no folder. Throws corda::Error (kIo).
 [[nodiscard]] std::vector<std::string> references_in(const std::string& folder);

@@ -63,15 +63,6 @@ std::string keep_artifacts(const std::string& name, const fs::path& golden_folde
     return fmt::format("; see {} and {}", drawn_path, difference_path);
 }
 
-/// Whether `corda golden` made a picture.
-bool is_of_suite(const std::string& path) {
-    try {
-        return provenance_in(read_png_info(path)).golden.has_value();
-    } catch (const Error&) {  // it is missing, or damaged
-        return false;
-    }
-}
-
 /// Message for a golden picture that cannot be read; empty if it can.
 std::string read_golden(const std::string& path, Picture& golden) {
     try {
@@ -84,7 +75,7 @@ std::string read_golden(const std::string& path, Picture& golden) {
 }
 
 GoldenOutcome update(const fs::path& path, const Image& drawn, const std::string& why) {
-    if (is_of_suite(path.string()))
+    if (golden::provenance_of_file(path.string()).golden)
         return {.matches = false,
                 .written = false,
                 .message = why + "; update it by corda golden --update, which made it"};

@@ -364,11 +364,13 @@ void require_files(const SuiteDef& def, const std::vector<Case>& cases) {
 SuiteResult run(const SuiteDef& def) {
     std::vector<Checked> invalid;
     SuiteResult result{.may_change = def.update, .dry_run = def.dry_run};
-    std::vector<Case> cases = load_cases(def, invalid, result.details);
+    std::vector<std::string> passed_over;
+    std::vector<Case> cases = load_cases(def, invalid, passed_over);
     const std::vector<std::string> references = references_in(def.folder);
     std::vector<std::string> stale =
         invalid.empty() ? stale_ones(def, cases, references) : std::vector<std::string>{};
     select(def, cases, stale, invalid);
+    tell_passed_over(passed_over, stale, result);
     require_files(def, cases);
     std::erase_if(cases, [](const Case& one) {
         return std::none_of(one.pictures.begin(), one.pictures.end(),

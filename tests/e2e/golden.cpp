@@ -269,6 +269,16 @@ TEST_F(GoldenSuite, SkipsTomlFilesOfOtherPrograms) {
               3);
 }
 
+TEST_F(GoldenSuite, WarnsIfPicturesAreStaleForALostSchema) {
+    test::write_file(folder_.file("scenes/other.toml"), kGoldenScene);
+    EXPECT_EQ(run({"--update"}).exit_code, 0);
+    test::write_file(folder_.file("scenes/other.toml"), std::string(kGoldenScene).substr(11));
+    const auto result = run();
+    EXPECT_EQ(result.exit_code, 7);
+    EXPECT_THAT(result.err,
+                HasSubstr("other.toml: passed over, and its pictures are stale: it has no schema = 1; add"));
+}
+
 TEST_F(GoldenSuite, NamesADanglingLinkAndChecksTheOthers) {
     std::filesystem::create_symlink("nothing", folder_.file("scenes/link.toml"));
     const auto result = run({"--json"});

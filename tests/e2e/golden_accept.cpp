@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "corda/core/text.hpp"
 #include "corda/media/defs.hpp"
 #include "support/command.hpp"
 #include "support/golden_suite.hpp"
@@ -146,6 +147,52 @@ TEST_F(GoldenReview, RefusesPicturesOfAnotherSuiteSceneOrReference) {
     manifest.replace(manifest.find("\"name\": \"swing"), 14, "\"name\": \"../..");
     test::write_file(fresh("golden.json"), manifest);
     expect_refused("is no name of a picture");
+}
+
+TEST_F(GoldenReview, RefusesWhatAForeignFolderHolds) {
+    change_scene();
+    EXPECT_EQ(draw_new().exit_code, 7);
+    const std::string manifest = read_file(fresh("golden.json"));
+    const auto change_manifest = [&](const auto& change) {
+        auto json = nlohmann::json::parse(manifest);
+        change(json["pictures"][1]);
+        test::write_file(fresh("golden.json"), json.dump());
+    };
+    test::write_file(fresh(kMiddle), "no picture");
+    change_manifest([](auto& picture) { picture["hash"] = hash_text("no picture"); });
+    expect_refused("swing_t0000_500000.png: it is no picture: ");
+
+    // A later --new removes what an earlier one wrote, and nothing else.
+    test::write_file(fresh("mine"), "");
+    test::write_file(fresh("mine.png"), "");
+    change_manifest([](auto& picture) { picture["name"] = "mine.png"; });
+    EXPECT_EQ(draw_new().exit_code, 7);
+    change_manifest([](auto& picture) { picture["name"] = std::string("mine\0.png", 9); });
+    expect_refused("is no name of a picture");
+    EXPECT_EQ(draw_new().exit_code, 2);
+    EXPECT_TRUE(fs::exists(fresh("mine")));
+    EXPECT_TRUE(fs::exists(fresh("mine.png")));
+}
+
+TEST_F(GoldenReview, TakesAPictureOfTwoFoldersIfItIsTheSame) {
+    change_scene();
+    EXPECT_EQ(draw_new().exit_code, 7);
+    const std::string second = folder_.file("second");
+    fs::copy(fresh(), second);
+    EXPECT_THAT(run({"--accept", fresh(), "--accept", second, "--dry-run"}).out, HasSubstr("3 pictures: "));
+    change_scene("drag = 0.5\n");
+    fs::remove_all(second);
+    EXPECT_EQ(run({"--new", second}).exit_code, 7);
+    expect_refused("second/swing_t0000_500000.png: another folder has another picture of this name",
+                   {"--accept", second});
+}
+
+TEST_F(GoldenReview, AcceptsByExactNamesWithCharactersOfPatterns) {
+    test::write_file(folder_.file("scenes/swing[1]*.toml"), kGoldenScene);
+    test::write_file(folder_.file("scenes/swing1.toml"), kGoldenScene);
+    EXPECT_THAT(run({"--only", "swing[1]*"}).out, HasSubstr("3 pictures: 0 passed, 0 failed, 3 missing"));
+    EXPECT_THAT(run({"--only", "swing[1]*_t0000_500000.png"}).out, HasSubstr("1 picture: "));
+    EXPECT_THAT(run({"--only", "swing[12]*"}).out, HasSubstr("3 pictures: "));
 }
 
 #ifndef CORDA_SANITIZE  // whose run time must be loaded first
