@@ -27,7 +27,10 @@ ExitCode watch(const Console& console, const WatchOptions& options) {
         throw Error(ExitCode::kUsage, "a scene on standard input does not change; give the path of a file");
     constexpr int kWaitMs = 200;
     serve::FileWatch file(options.scene.path);
-    serve::WatchDef def{options.scene.path, options.scene.settings, options.side_px, {}};
+    serve::WatchDef def{.path = options.scene.path,
+                        .settings = options.scene.settings,
+                        .longest_side_px = options.side_px,
+                        .film = {}};
     options.gl.apply_to(def.film);
     serve::Watch watch(std::move(def));
     const serve::Server server(options.server,
@@ -55,7 +58,8 @@ void add_watch(CLI::App& app, Action& action) {
                     "show a scene on a page of this machine, new with every save of its file", watch);
     options.scene.add_to(command);
     options.gl.add_to(command);
-    command.add_option("--port", options.server.port, "port at 127.0.0.1; 0: any that is free");
+    command.add_option("--port", options.server.port, "port at 127.0.0.1; 0: any that is free")
+        ->check(within(0, 65535));
     command
         .add_option(
             "--host", options.server.hosts,

@@ -21,11 +21,14 @@ FileWatch::FileWatch(const std::string& path)
     // The folder is watched, because many editors put a new file in the place of the old one.
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     constexpr unsigned kEvents = IN_CLOSE_WRITE | IN_MOVED_TO | IN_DELETE;
-    if (!inotify_ || ::inotify_add_watch(inotify_.get(), folder.empty() ? "." : folder.c_str(), kEvents) < 0)
-        throw Error(ExitCode::kTemporary,
-                    fmt::format("cannot watch '{}': {}; raise fs.inotify.max_user_instances and "
-                                "fs.inotify.max_user_watches",
-                                path, std::generic_category().message(errno)));
+    if (inotify_ && ::inotify_add_watch(inotify_.get(), folder.empty() ? "." : folder.c_str(), kEvents) >= 0)
+        return;
+    const int reason = errno;
+    if (reason != EMFILE && reason != ENFILE && reason != ENOSPC) fail_file("watch", path, reason);
+    throw Error(ExitCode::kTemporary,
+                fmt::format("cannot watch '{}': {}; raise fs.inotify.max_user_instances "
+                            "and fs.inotify.max_user_watches",
+                            path, std::generic_category().message(reason)));
 }
 
 bool FileWatch::wait(int timeout_ms) {

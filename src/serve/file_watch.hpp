@@ -9,7 +9,7 @@ namespace corda::serve {
 /// Notices changes of a file, also by programs that put another file in its place.
 class FileWatch {
   public:
-    /// Throws corda::Error (kTemporary) if the system watches no more files.
+    /// Throws corda::Error: kTemporary if the system watches no more files, kIo if there is no such folder.
     explicit FileWatch(const std::string& path);
 
     /// Waits up to `timeout_ms` for a change of the folder. Whether the file has changed, its time, size and

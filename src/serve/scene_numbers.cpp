@@ -78,10 +78,6 @@ class Collector {
     std::vector<Found> found_;
 };
 
-std::vector<Found> find_all(std::string_view text, const std::string& name) {
-    return Collector().collect(scene::parse_document(text, name));
-}
-
 std::string text_of(double value, bool is_integer) {
     return is_integer ? fmt::format("{:.0f}", value) : scene::number_text(value);
 }
@@ -98,9 +94,16 @@ std::size_t offset_of(std::string_view text, toml::source_position place) {
 
 }  // namespace
 
-std::vector<SceneNumber> numbers_of(std::string_view text, const std::string& name) {
+std::vector<SceneNumber> numbers_of(std::string_view text, const std::string& name,
+                                    const std::vector<Setting>& settings) {
+    toml::table document = scene::parse_document(text, name);
     std::vector<SceneNumber> numbers;
-    for (Found& found : find_all(text, name)) numbers.push_back(std::move(found.number));
+    for (Found& found : Collector().collect(document)) numbers.push_back(std::move(found.number));
+    scene::Problems ignored(name);  // parse_scene() tells them
+    for (const Setting& setting : settings) scene::apply_setting(document, setting, ignored);
+    for (SceneNumber& number : numbers)
+        if (const auto node = document.at_path(number.key); node.is_number())
+            number.value = scene::number_of(*node.node());
     return numbers;
 }
 
@@ -113,7 +116,7 @@ std::vector<Setting> settings_of(const NumberChanges& changes, const std::vector
 }
 
 std::string with_changes(std::string text, const std::string& name, const NumberChanges& changes) {
-    std::vector<Found> all = find_all(text, name);
+    std::vector<Found> all = Collector().collect(scene::parse_document(text, name));
     for (const auto& change : changes)
         if (std::none_of(all.begin(), all.end(),
                          [&](const Found& its) { return its.number.key == change.first; }))

@@ -11,8 +11,8 @@ namespace corda::serve {
 
 /// A number in a scene file.
 struct SceneNumber {
-    std::string key;  ///< as --set takes it: "rope[0].hang.angle_deg", "world.gravity[1]"
-    double value = 0.0;
+    std::string key;          ///< as --set takes it: "rope[0].hang.angle_deg", "world.gravity[1]"
+    double value = 0.0;       ///< that of a setting, if there is one
     bool is_integer = false;  ///< the key takes integers only
     double low = 0.0;         ///< its range
     double high = 0.0;
@@ -22,8 +22,10 @@ struct SceneNumber {
 };
 
 /// The numbers of a scene file that change motion or picture, in the order of the file: those of long lists
-/// and of [video] and [golden] are left out. Throws corda::Error (kInvalidScene) if it is no TOML.
-[[nodiscard]] std::vector<SceneNumber> numbers_of(std::string_view text, const std::string& name);
+/// and of [video] and [golden] are left out. Throws corda::Error: kInvalidScene if it is no TOML, kUsage for
+/// a setting that is not key=value.
+[[nodiscard]] std::vector<SceneNumber> numbers_of(std::string_view text, const std::string& name,
+                                                  const std::vector<Setting>& settings = {});
 
 /// New values of numbers, by their keys.
 using NumberChanges = std::map<std::string, double>;

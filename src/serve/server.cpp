@@ -13,10 +13,12 @@
 #include <cerrno>
 #include <cstring>
 #include <exception>
+#include <optional>
 #include <system_error>
 #include <utility>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/loaded_function.hpp"
 #include "corda/core/text.hpp"
 
 namespace corda::serve {
@@ -24,54 +26,27 @@ namespace {
 
 constexpr std::size_t kMaxBodyBytes = std::size_t{1} << 20;
 
-/// The functions of libmicrohttpd, which is loaded on first use: with the nine libraries that it brings, it
-/// would take 3.6 ms of each start of the program.
-class Library {
-  public:
-    static const Library& get() {
-        static const Library library;
-        return library;
-    }
+/// Loads libmicrohttpd on first use: with the nine libraries that it brings, it would take 3.6 ms of each
+/// start of the program.
+void* find_httpd_function(const char* name) {
+    void* const library = dlopen("libmicrohttpd.so.12", RTLD_NOW | RTLD_LOCAL);  // it stays loaded
+    void* const function = library == nullptr ? nullptr : dlsym(library, name);
+    if (function != nullptr) return function;
+    throw Error(ExitCode::kTemporary, fmt::format("the web server cannot be loaded: {}; install it (Debian: "
+                                                  "apt-get install libmicrohttpd12)",
+                                                  dlerror()));
+}
 
-    decltype(&MHD_start_daemon) start_daemon = nullptr;
-    decltype(&MHD_stop_daemon) stop_daemon = nullptr;
-    decltype(&MHD_get_daemon_info) get_daemon_info = nullptr;
-    decltype(&MHD_get_connection_values) get_connection_values = nullptr;
-    decltype(&MHD_lookup_connection_value) lookup_connection_value = nullptr;
-    decltype(&MHD_create_response_from_buffer) create_response_from_buffer = nullptr;
-    decltype(&MHD_add_response_header) add_response_header = nullptr;
-    decltype(&MHD_queue_response) queue_response = nullptr;
-    decltype(&MHD_destroy_response) destroy_response = nullptr;
-
-  private:
-    Library() : handle_(dlopen("libmicrohttpd.so.12", RTLD_NOW | RTLD_LOCAL)) {
-        if (handle_ == nullptr) fail();
-        find(start_daemon, "MHD_start_daemon");
-        find(stop_daemon, "MHD_stop_daemon");
-        find(get_daemon_info, "MHD_get_daemon_info");
-        find(get_connection_values, "MHD_get_connection_values");
-        find(lookup_connection_value, "MHD_lookup_connection_value");
-        find(create_response_from_buffer, "MHD_create_response_from_buffer");
-        find(add_response_header, "MHD_add_response_header");
-        find(queue_response, "MHD_queue_response");
-        find(destroy_response, "MHD_destroy_response");
-    }
-
-    template <class Function>
-    void find(Function& function, const char* name) {
-        function = reinterpret_cast<Function>(dlsym(handle_, name));
-        if (function == nullptr) fail();
-    }
-
-    [[noreturn]] static void fail() {
-        throw Error(ExitCode::kTemporary,
-                    fmt::format("the web server cannot be loaded: {}; install it (Debian: apt-get install "
-                                "libmicrohttpd12)",
-                                dlerror()));
-    }
-
-    void* handle_;
-};
+// Within this namespace these names stand for those of libmicrohttpd, which the program is not linked with.
+#define CORDA_HTTPD(name) constinit const decltype(loaded_function<&find_httpd_function>(&::name)) name(#name)
+CORDA_HTTPD(MHD_add_response_header);
+CORDA_HTTPD(MHD_create_response_from_buffer);
+CORDA_HTTPD(MHD_destroy_response);
+CORDA_HTTPD(MHD_get_connection_values);
+CORDA_HTTPD(MHD_lookup_connection_value);
+CORDA_HTTPD(MHD_queue_response);
+CORDA_HTTPD(MHD_stop_daemon);
+#undef CORDA_HTTPD
 
 std::string random_token() {
     std::array<unsigned char, 16> bytes{};
@@ -97,10 +72,32 @@ std::string lower(std::string_view text) {
     return result;
 }
 
+/// The name in "Example.org:8000", in lower case.
+std::string name_of(std::string_view host) {
+    return lower(host.substr(0, host.find(':', host.starts_with('[') ? host.find(']') : 0)));
+}
+
+bool is_among(std::string_view name, std::span<const std::string> hosts) {
+    return std::any_of(hosts.begin(), hosts.end(),
+                       [&](const std::string& host) { return name_of(host) == name; });
+}
+
+/// Calls `use`, whose exceptions must not reach the C functions of libmicrohttpd.
+template <class Use>
+MHD_Result guarded(const Use& use) noexcept {
+    try {
+        return use();
+    } catch (...) {
+        return MHD_NO;  // closes the connection
+    }
+}
+
 MHD_Result add_value(void* values, MHD_ValueKind, const char* name, const char* value) {
-    auto& query = *static_cast<decltype(Request::query)*>(values);
-    query[name] = value == nullptr ? "" : value;
-    return MHD_YES;
+    return guarded([&] {
+        auto& query = *static_cast<decltype(Request::query)*>(values);
+        query[name] = value == nullptr ? "" : value;
+        return MHD_YES;
+    });
 }
 
 /// The body of a request so far.
@@ -125,11 +122,8 @@ Response page_response(std::string_view type, std::string_view text) {
 }
 
 bool is_known_host(std::string_view host, std::span<const std::string> others) {
-    const std::size_t end = host.find(':', host.starts_with('[') ? host.find(']') : 0);
-    const std::string name = lower(host.substr(0, end));
-    if (name == "localhost" || name == "127.0.0.1" || name == "[::1]") return true;
-    return std::any_of(others.begin(), others.end(),
-                       [&](const std::string& other) { return lower(other) == name; });
+    const std::string name = name_of(host);
+    return name == "localhost" || name == "127.0.0.1" || name == "[::1]" || is_among(name, others);
 }
 
 struct Server::Impl {
@@ -140,37 +134,45 @@ struct Server::Impl {
     MHD_Daemon* daemon = nullptr;
 
     [[nodiscard]] std::string header(MHD_Connection* connection, const char* name) const {
-        const char* const value = Library::get().lookup_connection_value(connection, MHD_HEADER_KIND, name);
+        const char* const value = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, name);
         return value == nullptr ? "" : value;
     }
 
-    [[nodiscard]] Response answer(MHD_Connection* connection, std::string_view url, std::string_view method,
-                                  Body& body) const {
+    /// The response to a request that is not for this page; checked before its body is read.
+    [[nodiscard]] std::optional<Response> refusal(MHD_Connection* connection, std::string_view url,
+                                                  std::string_view method) const {
         const std::string host = header(connection, "Host");
         if (!is_known_host(host, def.hosts))
-            return text_response(
-                403, fmt::format("'{}' is not this machine; behind a proxy of that name, start with "
-                                 "--host {}\n",
-                                 printable(host), printable(host.substr(0, host.find(':')))));
+            return text_response(403,
+                                 fmt::format("'{}' is not this machine; behind a proxy of that name, start "
+                                             "with --host {}\n",
+                                             printable(host), printable(name_of(host))));
         const std::string origin = header(connection, "Origin");
         const std::size_t scheme_end = origin.find("://");
-        const std::string_view origin_host =
-            scheme_end == std::string::npos ? origin : std::string_view(origin).substr(scheme_end + 3);
-        if (!origin.empty() && origin_host != host &&
-            !std::any_of(def.hosts.begin(), def.hosts.end(),
-                         [&](const std::string& its) { return lower(its) == lower(origin_host); }))
-            return text_response(403, "requests of other pages are refused\n");
+        const std::string its_host = scheme_end == std::string::npos ? origin : origin.substr(scheme_end + 3);
+        // A proxy may serve the page at any port of its own.
+        if (!origin.empty() && lower(its_host) != lower(host) && !is_among(name_of(its_host), def.hosts))
+            return text_response(403,
+                                 fmt::format("requests of the page of '{}' are refused; if this is the page "
+                                             "behind a proxy of that name, start with --host {}\n",
+                                             printable(origin), printable(name_of(its_host))));
         if (url.size() < token.size() + 2 || !is_equal(url.substr(1, token.size()), token) ||
             url[token.size() + 1] != '/')
             return text_response(404, "there is no such page; take the address that the program printed\n");
         if (method != "GET" && method != "HEAD" && method != "POST")
             return text_response(405, "the methods are GET and POST\n");
-        if (body.is_too_long) return text_response(413, "the request is too long\n");
+        return std::nullopt;
+    }
+
+    [[nodiscard]] Response answer(MHD_Connection* connection, std::string_view url, std::string_view method,
+                                  Body& body) const {
+        if (body.is_too_long)
+            return text_response(413, fmt::format("the request is over {} bytes long\n", kMaxBodyBytes));
         Request request;
         request.is_post = method == "POST";
         request.path = url.substr(token.size() + 2);
         request.body = std::move(body.text);
-        Library::get().get_connection_values(connection, MHD_GET_ARGUMENT_KIND, &add_value, &request.query);
+        MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, &add_value, &request.query);
         try {
             return handler(request);
         } catch (const Error& error) {
@@ -181,8 +183,7 @@ struct Server::Impl {
     }
 
     [[nodiscard]] static MHD_Result send(MHD_Connection* connection, const Response& response) {
-        const Library& library = Library::get();
-        MHD_Response* const made = library.create_response_from_buffer(
+        MHD_Response* const made = MHD_create_response_from_buffer(
             response.body.size(), const_cast<char*>(response.body.data()), MHD_RESPMEM_MUST_COPY);
         if (made == nullptr) return MHD_NO;
         constexpr std::pair<const char*, const char*> kHeaders[] = {
@@ -193,27 +194,30 @@ struct Server::Impl {
             {"Cross-Origin-Resource-Policy", "same-origin"},
             {"Referrer-Policy", "no-referrer"},
             {"X-Content-Type-Options", "nosniff"}};
-        library.add_response_header(made, "Content-Type", response.type.c_str());
-        for (const auto& [name, value] : kHeaders) library.add_response_header(made, name, value);
-        const MHD_Result queued = library.queue_response(connection, response.status, made);
-        library.destroy_response(made);
+        MHD_add_response_header(made, "Content-Type", response.type.c_str());
+        for (const auto& [name, value] : kHeaders) MHD_add_response_header(made, name, value);
+        const MHD_Result queued = MHD_queue_response(connection, response.status, made);
+        MHD_destroy_response(made);
         return queued;
     }
 
     static MHD_Result on_request(void* self, MHD_Connection* connection, const char* url, const char* method,
                                  const char*, const char* upload, std::size_t* upload_bytes, void** kept) {
-        if (*kept == nullptr) {
-            *kept = new Body;
-            return MHD_YES;
-        }
-        auto& body = *static_cast<Body*>(*kept);
-        if (*upload_bytes > 0) {
+        return guarded([&] {
+            const Impl& its = *static_cast<const Impl*>(self);
+            if (*kept == nullptr) {
+                if (const auto refused = its.refusal(connection, url, method))
+                    return send(connection, *refused);
+                *kept = new Body;
+                return MHD_YES;
+            }
+            auto& body = *static_cast<Body*>(*kept);
+            if (*upload_bytes == 0) return send(connection, its.answer(connection, url, method, body));
             body.is_too_long = body.is_too_long || body.text.size() + *upload_bytes > kMaxBodyBytes;
             if (!body.is_too_long) body.text.append(upload, *upload_bytes);
             *upload_bytes = 0;
             return MHD_YES;
-        }
-        return send(connection, static_cast<const Impl*>(self)->answer(connection, url, method, body));
+        });
     }
 };
 
@@ -226,9 +230,10 @@ Server::Server(const ServerDef& def, Handler handler) : impl_(std::make_unique<I
     place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     constexpr unsigned kMaxConnections = 64;
     constexpr unsigned kSilentSeconds = 60;
-    const Library& library = Library::get();
+    const auto start_daemon =
+        reinterpret_cast<decltype(&::MHD_start_daemon)>(find_httpd_function("MHD_start_daemon"));
     errno = 0;
-    impl_->daemon = library.start_daemon(
+    impl_->daemon = start_daemon(
         MHD_USE_THREAD_PER_CONNECTION | MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_AUTO, def.port, nullptr,
         nullptr, &Impl::on_request, impl_.get(), MHD_OPTION_SOCK_ADDR, reinterpret_cast<sockaddr*>(&place),
         MHD_OPTION_CONNECTION_LIMIT, kMaxConnections, MHD_OPTION_CONNECTION_TIMEOUT, kSilentSeconds,
@@ -237,13 +242,15 @@ Server::Server(const ServerDef& def, Handler handler) : impl_(std::make_unique<I
         throw Error(ExitCode::kIo,
                     fmt::format("cannot serve at 127.0.0.1:{}: {}; give another --port, or none", def.port,
                                 std::generic_category().message(errno)));
-    const MHD_DaemonInfo* const info = library.get_daemon_info(impl_->daemon, MHD_DAEMON_INFO_BIND_PORT);
+    const auto get_daemon_info =
+        reinterpret_cast<decltype(&::MHD_get_daemon_info)>(find_httpd_function("MHD_get_daemon_info"));
+    const MHD_DaemonInfo* const info = get_daemon_info(impl_->daemon, MHD_DAEMON_INFO_BIND_PORT);
     impl_->address =
         fmt::format("http://127.0.0.1:{}/{}/", info == nullptr ? def.port : info->port, impl_->token);
 }
 
 Server::~Server() {
-    Library::get().stop_daemon(impl_->daemon);
+    MHD_stop_daemon(impl_->daemon);
 }
 
 const std::string& Server::address() const {

@@ -9,6 +9,8 @@
 #include <exception>
 #include <new>
 #include <numbers>
+#include <regex>
+#include <sstream>
 #include <utility>
 
 #include "corda/core/cancel.hpp"
@@ -26,43 +28,24 @@ namespace {
 using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kPictureBytes = std::size_t{96} << 20U;
 constexpr auto kLongestWait = std::chrono::seconds(20);
 constexpr int kMinSidePx = 160;
 
-/// The picture size of a shape whose longer side has `side_px`, but not more than its own.
-void shrink(VideoDef& video, int side_px) {
-    const int longest_px = std::max(video.width_px, video.height_px);
-    const double scale = 1.0 * std::min(side_px, longest_px) / longest_px;
-    for (int* const px : {&video.width_px, &video.height_px})
-        *px = std::max(1, static_cast<int>(std::lround(scale * *px)));
-}
-
 /// The lines of an error with their places in the file, as the page shows them.
 Json problems_of(const std::string& message, const std::string& name) {
+    static const std::regex kPlace("([0-9]+):([0-9]+): *");
     Json problems = Json::array();
-    for (std::size_t begin = 0; begin <= message.size();) {
-        const std::size_t end = std::min(message.find('\n', begin), message.size());
-        std::string_view line(message.data() + begin, end - begin);
-        begin = end + 1;
+    std::istringstream lines(message);
+    for (std::string line; std::getline(lines, line);) {
         Json problem = {{"line", nullptr}, {"column", nullptr}};
+        std::smatch place;
         if (line.starts_with(name + ":")) {
-            const std::string_view rest = line.substr(name.size() + 1);
-            std::size_t numbers[2] = {};
-            const char* at = rest.data();
-            int read = 0;
-            for (; read < 2; ++read) {
-                const auto [stop, status] = std::from_chars(at, rest.data() + rest.size(), numbers[read]);
-                if (status != std::errc{} || stop == rest.data() + rest.size() || *stop != ':') break;
-                at = stop + 1;
-            }
-            if (read == 2) {
-                problem["line"] = numbers[0];
-                problem["column"] = numbers[1];
-                line = rest.substr(static_cast<std::size_t>(at - rest.data()));
-            }
+            line.erase(0, name.size() + 1);
+            if (std::regex_search(line, place, kPlace, std::regex_constants::match_continuous))
+                problem = {{"line", std::stoul(place[1])}, {"column", std::stoul(place[2])}};
         }
-        problem["text"] = printable(line.substr(std::min(line.find_first_not_of(' '), line.size())));
+        const std::size_t begin = place.empty() ? 0 : static_cast<std::size_t>(place.length());
+        problem["text"] = printable(line.substr(std::min(line.find_first_not_of(' ', begin), line.size())));
         problems.push_back(std::move(problem));
     }
     return problems;
@@ -70,10 +53,10 @@ Json problems_of(const std::string& message, const std::string& name) {
 
 Json json_of(const SceneNumber& number, const NumberChanges& changes) {
     const auto change = changes.find(number.key);
-    return {{"key", number.key},       {"value", change == changes.end() ? number.value : change->second},
-            {"in_file", number.value}, {"is_integer", number.is_integer},
-            {"low", number.low},       {"high", number.high},
-            {"unit", number.unit},     {"meaning", number.meaning},
+    return {{"key", number.key},         {"value", change == changes.end() ? number.value : change->second},
+            {"unchanged", number.value}, {"is_integer", number.is_integer},
+            {"low", number.low},         {"high", number.high},
+            {"unit", number.unit},       {"meaning", number.meaning},
             {"line", number.line}};
 }
 
@@ -89,13 +72,16 @@ std::vector<std::string> plan_lines(Film& film) {
     return lines;
 }
 
-std::int64_t number_in(const Request& request, std::string_view name) {
-    const auto found = request.query.find(name);
+/// -1 for a text that is no number.
+std::int64_t number_of(std::string_view text) {
     std::int64_t number = 0;
-    if (found == request.query.end()) return number;
-    const std::string& text = found->second;
     const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
     return status == std::errc{} && end == text.data() + text.size() ? number : -1;
+}
+
+std::int64_t number_in(const Request& request, std::string_view name) {
+    const auto found = request.query.find(name);
+    return found == request.query.end() ? 0 : number_of(found->second);
 }
 
 }  // namespace
@@ -151,7 +137,7 @@ void Watch::work() {
             });
             if (is_ending_) break;
             loads = std::exchange(is_reload_asked_, false);
-            draws = frame && (!are_curves_wanted_ || wanted_.contains(*frame));
+            draws = frame && (!are_curves_wanted_ || is_awaited(*frame));
         }
         try {
             if (loads)
@@ -176,7 +162,6 @@ void Watch::forget_film() {
     film_ = nullptr;
     frames_ = 0;
     ++film_number_;
-    wanted_.clear();
     pictures_.clear();
     picture_bytes_ = 0;
     curves_.reset();
@@ -199,6 +184,7 @@ OnProgress Watch::progress() {
 void Watch::load() {
     int side_px = 0;
     NumberChanges changes;
+    std::vector<Setting> settings;
     {
         const std::lock_guard lock(mutex_);
         is_busy_ = true;
@@ -206,12 +192,11 @@ void Watch::load() {
         ++version_;
         side_px = def_.longest_side_px;
         changes = changes_;
+        settings = def_.settings;
     }
     changed_.notify_all();
     const std::string text = scene::read_file(def_.path);
-    const std::vector<SceneNumber> numbers = numbers_of(text, def_.path);
-    std::vector<Setting> settings = def_.settings;
-    for (Setting& setting : settings_of(changes, numbers)) settings.push_back(std::move(setting));
+    const std::vector<SceneNumber> numbers = numbers_of(text, def_.path, settings);
     {
         const std::lock_guard lock(mutex_);
         text_ = text;
@@ -221,15 +206,16 @@ void Watch::load() {
                                 [&](const SceneNumber& number) { return number.key == change.first; });
         });
     }
-    Scene scene = parse_scene(text, def_.path, settings);
+    Scene scene = parse_scene(text, def_.path, settings, {"slider", settings_of(changes, numbers)});
     const std::pair full_px(scene.video.width_px, scene.video.height_px);
-    shrink(scene.video, side_px);
+    scene.video.scale_to(std::min(side_px, std::max(full_px.first, full_px.second)));
     FilmDef def = def_.film;
     def.readings.velocities = true;
     def.on_progress = progress();
     Film film(scene, std::move(def));
-    static_cast<void>(film.camera());  // simulates the motion
-    forget_film();                     // should the next renderer fail, there is none
+    static_cast<void>(
+        film.state(film.frame_count() - 1));  // simulates the motion, so that its errors come now
+    forget_film();                            // should the next renderer fail, there is none
     shown_->renderer.reset();
     shown_->film.emplace(std::move(film));
     shown_->renderer.emplace(*shown_->film, &shown_->canvas);
@@ -331,25 +317,29 @@ std::int64_t Watch::distance(std::int64_t k) const {
 /// The frame to draw next: one that was asked for, or the next one after the playhead while there is room.
 std::optional<std::int64_t> Watch::next_frame() const {
     if (film_.is_null() || is_busy_) return std::nullopt;
-    if (!wanted_.empty()) return wanted_.contains(playhead_) ? playhead_ : *wanted_.begin();
+    if (is_awaited(playhead_) && !pictures_.contains(playhead_)) return playhead_;
+    for (auto next = waiting_.lower_bound({film_number_, 0}); next != waiting_.end(); ++next)
+        if (!pictures_.contains(next->second)) return next->second;
     if (std::ssize(pictures_) >= frames_) return std::nullopt;
     std::int64_t ahead = 0;
     while (pictures_.contains((playhead_ + ahead) % frames_)) ++ahead;
     const auto is_farther = [&](const auto& entry) { return distance(entry.first) > ahead; };
     // Half of the room, so that a frame that is drawn ahead is not itself the first one to go.
-    const bool has_room =
-        picture_bytes_ < kPictureBytes / 2 || std::any_of(pictures_.begin(), pictures_.end(), is_farther);
+    const bool has_room = picture_bytes_ < def_.picture_bytes / 2 ||
+                          std::any_of(pictures_.begin(), pictures_.end(), is_farther);
     return has_room ? std::optional((playhead_ + ahead) % frames_) : std::nullopt;
 }
 
 void Watch::keep(std::int64_t k, Picture picture) {
     picture_bytes_ += picture.png.size();
-    wanted_.erase(k);
     pictures_.insert_or_assign(k, std::move(picture));
-    while (picture_bytes_ > kPictureBytes && pictures_.size() > 1) {
-        const auto last = std::max_element(
-            pictures_.begin(), pictures_.end(),
-            [&](const auto& a, const auto& b) { return distance(a.first) < distance(b.first); });
+    // One that a request waits for stays until it is taken.
+    const auto rank = [&](std::int64_t frame) { return is_awaited(frame) ? -1 : distance(frame); };
+    while (picture_bytes_ > def_.picture_bytes && pictures_.size() > 1) {
+        const auto last =
+            std::max_element(pictures_.begin(), pictures_.end(),
+                             [&](const auto& a, const auto& b) { return rank(a.first) < rank(b.first); });
+        if (is_awaited(last->first)) break;
         picture_bytes_ -= last->second.png.size();
         pictures_.erase(last);
     }
@@ -362,15 +352,12 @@ Response Watch::answer(const Request& request) {
         if (request.path == "watch.js") return page_response("text/javascript", kWatchJs);
         if (request.path == "state") return state_after(number_in(request, "after"));
         if (request.path == "curves") return curves(number_in(request, "film"));
-        std::int64_t k = 0;
         const std::string_view path = request.path;
         constexpr std::string_view kFrame = "frame/";
-        if (path.starts_with(kFrame)) {
-            const auto [end, status] =
-                std::from_chars(path.data() + kFrame.size(), path.data() + path.size(), k);
-            if (status == std::errc{} && std::string_view(end, path.data() + path.size()) == ".png")
-                return frame(k, number_in(request, "film"));
-        }
+        constexpr std::string_view kPng = ".png";
+        if (path.starts_with(kFrame) && path.ends_with(kPng))
+            return frame(number_of(path.substr(kFrame.size(), path.size() - kFrame.size() - kPng.size())),
+                         number_in(request, "film"));
         return text_response(404, "there is no such page\n");
     }
     const Json body = Json::parse(request.body, nullptr, false);
@@ -410,13 +397,14 @@ Response Watch::frame(std::int64_t k, std::int64_t film) {
     if (film != film_number_ || k < 0 || k >= frames_)
         return text_response(410, "this frame is not in the present film\n");
     playhead_ = k;
-    if (!pictures_.contains(k)) wanted_.insert(k);
+    const auto waiting = waiting_.insert({film, k});
     changed_.notify_all();
     const auto is_over = [&] { return is_ending_ || film != film_number_ || pictures_.contains(k); };
     changed_.wait_for(lock, kLongestWait, is_over);
+    waiting_.erase(waiting);
+    if (film != film_number_) return text_response(410, "this frame is not in the present film\n");
     const auto found = pictures_.find(k);
-    if (film != film_number_ || found == pictures_.end())
-        return text_response(410, "this frame is not in the present film\n");
+    if (found == pictures_.end()) return text_response(503, "this frame is not drawn yet; ask again\n");
     if (!found->second.error.empty()) return text_response(422, found->second.error);
     return {200, "image/png", found->second.png};
 }
@@ -429,7 +417,9 @@ Response Watch::curves(std::int64_t film) {
     changed_.notify_all();
     changed_.wait_for(lock, kLongestWait,
                       [&] { return is_ending_ || film != film_number_ || curves_ || !are_curves_wanted_; });
-    if (film != film_number_ || !curves_) return text_response(410, "there are no curves\n");
+    if (film != film_number_ || !(curves_ || are_curves_wanted_))
+        return text_response(410, "there are no curves\n");
+    if (!curves_) return text_response(503, "the curves are not read yet; ask again\n");
     return {200, "application/json", *curves_};
 }
 
@@ -463,12 +453,18 @@ Response Watch::write_file() {
     }
     if (scene::read_file(def_.path) != text)
         return text_response(409, "the file has changed; look at its new state, and write again\n");
-    OutputFile file(def_.path, {.force = true});
-    file.write(with_changes(text, def_.path, changes));
-    file.commit();
+    save_file(def_.path, with_changes(text, def_.path, changes));
     {
         const std::lock_guard lock(mutex_);
-        changes_.clear();
+        // What has changed since stays a change, and a number in the file counts again in place of --set.
+        for (const auto& [key, value] : changes) {
+            if (const auto now = changes_.find(key); now != changes_.end() && now->second == value)
+                changes_.erase(now);
+            for (SceneNumber& number : numbers_)
+                if (number.key == key) number.value = value;
+            std::erase_if(def_.settings,
+                          [&](const Setting& setting) { return setting.starts_with(key + "="); });
+        }
     }
     reload();
     return {};

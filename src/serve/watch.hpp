@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -24,7 +25,8 @@ struct WatchDef {
     std::string path;               ///< of the scene file
     std::vector<Setting> settings;  ///< in the place of values of the file
     int longest_side_px = 640;      ///< of the pictures, which keep the shape of video.size
-    FilmDef film;                   ///< how to reach OpenGL
+    std::size_t picture_bytes = std::size_t{96} << 20U;  ///< room for pictures that are kept
+    FilmDef film;                                        ///< how to reach OpenGL
 };
 
 /// A scene file as a film that follows the file, for a page of a Server. A thread of its own simulates and
@@ -72,6 +74,7 @@ class Watch {
     void read_curves();
     [[nodiscard]] bool is_stale() const;
     [[nodiscard]] std::optional<std::int64_t> next_frame() const;
+    [[nodiscard]] bool is_awaited(std::int64_t k) const { return waiting_.contains({film_number_, k}); }
     void keep(std::int64_t k, Picture picture);
     [[nodiscard]] std::int64_t distance(std::int64_t k) const;
 
@@ -80,7 +83,6 @@ class Watch {
     [[nodiscard]] Response curves(std::int64_t film);
     [[nodiscard]] Response change_number(const Json& body);
     [[nodiscard]] Response write_file();
-    void change();
 
     WatchDef def_;
     std::unique_ptr<Shown> shown_;  ///< used by the thread alone
@@ -99,8 +101,8 @@ class Watch {
     std::string text_;  ///< of the file as it was loaded last
     std::vector<SceneNumber> numbers_;
     NumberChanges changes_;
-    std::int64_t playhead_ = 0;  ///< the frame that was asked for last
-    std::set<std::int64_t> wanted_;
+    std::int64_t playhead_ = 0;                                     ///< the frame that was asked for last
+    std::multiset<std::pair<std::int64_t, std::int64_t>> waiting_;  ///< film and frame, per request
     std::map<std::int64_t, Picture> pictures_;
     std::size_t picture_bytes_ = 0;
     bool are_curves_wanted_ = false;

@@ -33,7 +33,7 @@ function bitmapOf(k) {
     if (kept) return kept;
     const number = film.number;
     const bitmap = fetch(`frame/${k}.png?film=${number}`).then(async (response) => {
-        if (!response.ok) throw new Error(response.status === 410 ? "" : await response.text());
+        if (!response.ok) throw new Error(response.status === 410 || response.status === 503 ? "" : await response.text());
         return createImageBitmap(await response.blob());
     });
     bitmap.catch(() => { if (film.number === number) bitmaps.delete(k); });
@@ -61,6 +61,7 @@ async function show(k) {
         canvas.dataset.frame = `${number}:${k}`;
     } catch (error) {
         if (error.message) showProblems([{line: null, text: error.message}]);
+        else setTimeout(() => { if (film.number === number && frame === k && drawn !== k) show(k); }, 200);
     }
 }
 
@@ -153,17 +154,22 @@ async function send(key, value) {
     const isOnItsWay = sending.has(key);
     sending.set(key, value);
     if (isOnItsWay) return;
-    for (let sent; sending.get(key) !== sent;) {
-        sent = sending.get(key);
-        await post("number", {key, value: sent});
+    try {
+        for (let sent; sending.get(key) !== sent;) {
+            sent = sending.get(key);
+            const response = await post("number", {key, value: sent});
+            if (!response.ok) throw new Error(await response.text());
+        }
+    } catch (error) {
+        showProblems([{line: null, text: error.message}]);
     }
     sending.delete(key);
 }
 
-/// The ends and the step of a slider: around the number in the file, within the range of the key.
+/// The ends and the step of a slider: around the number of the scene, within the range of the key.
 function extentOf(number) {
-    const size = Math.abs(number.in_file);
-    let [low, high] = number.in_file > 0 ? [0, 3 * size] : number.in_file < 0 ? [-3 * size, 3 * size] : [-1, 1];
+    const size = Math.abs(number.unchanged);
+    let [low, high] = number.unchanged > 0 ? [0, 3 * size] : number.unchanged < 0 ? [-3 * size, 3 * size] : [-1, 1];
     if (number.unit === "degrees") [low, high] = [-180, 180];
     if (number.is_integer) high = Math.max(high, low + 10);
     const step = number.is_integer ? 1 : 10 ** Math.floor(Math.log10((high - low) / 200));
@@ -187,7 +193,7 @@ function makeRow(number) {
     return {box, slider, field, signature: signatureOf(number)};
 }
 
-const signatureOf = (number) => `${number.in_file} ${number.unit} ${number.low} ${number.high}`;
+const signatureOf = (number) => `${number.unchanged} ${number.unit} ${number.low} ${number.high}`;
 
 function showNumbers(state) {
     const keys = new Set(state.numbers.map((number) => number.key));
@@ -197,7 +203,7 @@ function showNumbers(state) {
         const row = rows.get(number.key);
         if (!row || row.signature !== signatureOf(number)) rows.set(number.key, makeRow(number));
         const {box, slider, field} = rows.get(number.key);
-        box.classList.toggle("changed", number.value !== number.in_file);
+        box.classList.toggle("changed", number.value !== number.unchanged);
         if (slider !== active && !sending.has(number.key)) slider.value = number.value;
         if (field !== active && !sending.has(number.key)) field.value = number.value;
     }
@@ -229,7 +235,7 @@ function svg(tag, attributes) {
     return element;
 }
 
-const shown = (value) => Number(value.toPrecision(4)).toString();
+const shown = (value) => Number(value.toPrecision(4)).toString().replace("-", "\u2212");
 
 function drawCurves(title, unit, series) {
     const all = series.flatMap(([, values]) => values);
@@ -251,13 +257,15 @@ function drawCurves(title, unit, series) {
     picture.addEventListener("pointermove", seekHere);
     const names = series.map(([name], i) => make("span", {class: `s${i + 1}`}, name));
     return make("figure", {}, make("figcaption", {}, make("b", {}, `${title} (${unit})`), ...(series.length > 1 ? names : [])), picture,
-        make("div", {class: "range"}, make("span", {}, `0 s`), make("span", {}, `${shown(low)} to ${shown(high)} ${unit}`), make("span", {}, `${shown(curves.end)} s`)));
+        make("div", {class: "range"}, make("span", {}, `0 s`), make("span", {}, `${shown(low)} to ${shown(high)}${unit === "°" ? "" : " "}${unit}`), make("span", {}, `${shown(curves.end)} s`)));
 }
 
 async function readCurves() {
     const number = film.number;
     const response = await fetch(`curves?film=${number}`);
-    if (!response.ok || film.number !== number) return;
+    if (film.number !== number) return;
+    if (response.status === 503) return readCurves();
+    if (!response.ok) return;
     curves = await response.json();
     curves.end = Math.max(curves.t[curves.t.length - 1], film.frame_s);
     const total = curves.kinetic_j.map((value, k) => value + curves.potential_j[k]);

@@ -81,6 +81,7 @@ def main():
             browser.wait("byId('outcome').textContent === '2 written'")
             check(sorted(filecmp.dircmp(kept, before).diff_files) == sorted(chosen), "others than the accepted pictures were written")
             browser.run("byId('end').click()")
+            browser.wait("byId('status').textContent === 'the review has ended'")
         check(program.wait(timeout=20) == 7, "pictures that were not accepted are no failure")
         rest = subprocess.run(suite, check=False, stdout=subprocess.PIPE, text=True)
         check(rest.returncode == 7 and "6 pictures: 2 passed, 4 failed" in rest.stdout, rest.stdout)

@@ -2,17 +2,24 @@
 """Edits scenes under `corda watch` and looks at its page in headless Chromium.
 
 Usage: watch.py CORDA [--saves N] [--figures FOLDER]
---saves: how often the scene is saved in a row (default 30); prints the times from a save to its picture.
+--saves: how often the scene is saved in a row (default 30).
 --figures: where to keep pictures of the page.
 """
 
 import argparse
+import http.client
+import http.server
 import os
+import re
+import select
 import signal
+import socket
+import socketserver
 import statistics
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import zlib
 
@@ -35,7 +42,7 @@ class Watching:
 
     def __init__(self, corda, browser, scene):
         self.scene, self.browser = scene, browser
-        self.program = subprocess.Popen([corda, "watch", scene, "-q"], stdout=subprocess.PIPE, text=True)
+        self.program = subprocess.Popen([corda, "watch", scene, "--host", "hub.localhost", "-q"], stdout=subprocess.PIPE, text=True)
         self.address = self.program.stdout.readline().strip()
         browser.open(self.address)
         browser.wait("document.readyState === 'complete' && typeof film === 'object' && film !== null && drawn >= 0")
@@ -90,6 +97,12 @@ def resident_kib(pid):
         return next(int(line.split()[1]) for line in file if line.startswith("VmRSS"))
 
 
+def processor_ms(pid):
+    with open(f"/proc/{pid}/stat", encoding="ascii") as file:
+        ticks = file.read().rsplit(")", 1)[1].split()[11:13]
+    return 1000 * sum(map(int, ticks)) / os.sysconf("SC_CLK_TCK")
+
+
 def check_scrubbing(watching, corda, folder):
     browser = watching.browser
     for frame in (0, 7, 119, 60):
@@ -134,12 +147,113 @@ def check_numbers(watching):
         check(written == SCENE.replace("80.0", "45.0"), f"writing made of the file: {written}")
 
 
+def check_faults(watching):
+    """Requests that fail are made again, or leave a number that can be changed."""
+    browser = watching.browser
+    browser.run("""(() => {
+        const whole = window.fetch;
+        let left = 2;
+        window.fetch = (path, ...rest) => path.startsWith('frame/90') && left-- > 0 ? Promise.resolve(new Response('', {status: 503}))
+            : path === 'number' ? Promise.reject(new Error('cut off')) : whole(path, ...rest);
+        window.mend = () => { window.fetch = whole; };
+        seek(90);
+    })()""")
+    browser.wait("drawn === 90")
+    slide = "(() => { const {slider} = rows.get('rope[0].hang.angle_deg'); slider.value = %d; slider.dispatchEvent(new Event('input')); })()"
+    browser.run(slide % 50)
+    browser.wait("!byId('problems').hidden && byId('problems').textContent === 'cut off' && sending.size === 0")
+    film = watching.film()
+    browser.run("mend()")
+    browser.run(slide % 55)
+    browser.wait(f"film.number > {film}")
+
+
+class Tunnel(socketserver.ThreadingTCPServer):
+    """Another port of this machine that leads to the server's, as that of ssh -L."""
+
+    daemon_threads = True
+
+    def __init__(self, port):
+        class Handler(socketserver.BaseRequestHandler):
+            def handle(self):
+                with socket.create_connection(("127.0.0.1", port)) as far:
+                    ends = {self.request: far, far: self.request}
+                    while True:
+                        for end in select.select(list(ends), [], [])[0]:
+                            part = end.recv(1 << 16)
+                            if not part:
+                                return
+                            ends[end].sendall(part)
+
+        super().__init__(("127.0.0.1", 0), Handler)
+        threading.Thread(target=self.serve_forever, daemon=True).start()
+
+
+class Proxy(http.server.ThreadingHTTPServer):
+    """Serves /proxy/PORT/... from that port, as Jupyter's proxy does. `host`: the Host header that it sends; None: that of the browser."""
+
+    daemon_threads = True
+
+    def __init__(self, port, host):
+        class Handler(http.server.BaseHTTPRequestHandler):
+            def do_GET(self):
+                prefix = f"/proxy/{port}"
+                if not self.path.startswith(prefix + "/"):
+                    self.send_error(404)
+                    return
+                far = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+                headers = {**self.headers, **({"Host": host} if host else {})}
+                body = self.rfile.read(int(self.headers.get("Content-Length", 0)))
+                far.request(self.command, self.path[len(prefix):], body, headers)
+                answer = far.getresponse()
+                text = answer.read()
+                self.send_response(answer.status)
+                for name in ("Content-Type", "Content-Security-Policy"):
+                    self.send_header(name, answer.getheader(name))
+                self.send_header("Content-Length", str(len(text)))
+                self.end_headers()
+                self.wfile.write(text)
+
+            do_POST = do_GET
+
+            def log_message(self, *_):
+                pass
+
+        super().__init__(("127.0.0.1", 0), Handler)
+        threading.Thread(target=self.serve_forever, daemon=True).start()
+
+
+def check_ways(watching):
+    """The page works by an ssh tunnel and behind a proxy at a path, and changes the film by both."""
+    browser = watching.browser
+    port, path = re.fullmatch(r"http://127\.0\.0\.1:(\d+)(/.*)", watching.address).groups()
+    tunnel, proxy, renaming = Tunnel(int(port)), Proxy(int(port), None), Proxy(int(port), "127.0.0.1:" + port)
+    for angle, address in enumerate((f"http://localhost:{tunnel.server_address[1]}{path}",
+                                     f"http://127.0.0.1:{proxy.server_address[1]}/proxy/{port}{path}",
+                                     f"http://hub.localhost:{renaming.server_address[1]}/proxy/{port}{path}")):
+        browser.open(address)
+        browser.wait(f"location.href === {address!r} && document.readyState === 'complete' && typeof film === 'object' && film !== null && drawn >= 0")
+        film = watching.film()
+        browser.run(f"(() => {{ const {{field}} = rows.get('rope[0].hang.angle_deg'); field.value = {30 + angle}; field.dispatchEvent(new Event('change')); }})()")
+        browser.wait(f"film.number > {film} && canvas.dataset.frame.startsWith(film.number + ':')")
+    # Another page may read nothing and change nothing, even if it knows the address.
+    for headers in ({"Origin": "http://evil.example"}, {"Host": "evil.example"}):
+        far = http.client.HTTPConnection("127.0.0.1", tunnel.server_address[1], timeout=60)
+        far.request("POST", path + "number", "{}", headers)
+        check(far.getresponse().status == 403, f"{headers} are not refused")
+    for server in (tunnel, proxy, renaming):
+        server.shutdown()
+    browser.open(watching.address)
+    browser.wait(f"location.href === {watching.address!r} && document.readyState === 'complete' && typeof film === 'object' && film !== null && drawn >= 0")
+
+
 def check_saves(watching, count):
-    """Saves the scene again and again; returns the milliseconds from each save to its picture."""
+    """Saves the scene again and again; prints the milliseconds from each save to its picture, and what it takes."""
     browser = watching.browser
     browser.run("seek(20)")
     times_ms = []
     kib = []
+    cpu_ms = processor_ms(watching.program.pid)
     for i in range(count):
         film = watching.film()
         text = SCENE.replace("angle_deg = 80.0", f"angle_deg = {20 + i % 60}.5")
@@ -155,7 +269,10 @@ def check_saves(watching, count):
         times_ms.append(browser.run("shownAt") - 1000 * start)
         kib.append(resident_kib(watching.program.pid))
     check(max(kib[len(kib) // 2:]) < 1.1 * max(kib[:len(kib) // 2]), f"memory grows: {kib[0]} to {kib[-1]} KiB")
-    return times_ms
+    times_ms.sort()
+    print(f"from a save to its picture, {count} saves: median {statistics.median(times_ms):.0f} ms, "
+          f"95 % {times_ms[int(0.95 * count)]:.0f} ms; {(processor_ms(watching.program.pid) - cpu_ms) / count:.0f} ms of CPU "
+          f"each; memory {kib[0] >> 10} MiB after the first, {kib[-1] >> 10} MiB after the last")
 
 
 def keep_figures(watching, folder):
@@ -190,14 +307,14 @@ def main():
                 check_scrubbing(watching, corda, folder)
                 check_errors(watching)
                 check_numbers(watching)
-                times_ms = sorted(check_saves(watching, options.saves))
+                check_faults(watching)
+                check_ways(watching)
+                check_saves(watching, options.saves)
                 if options.figures:
                     keep_figures(watching, options.figures)
             finally:
                 status = watching.end()
             check(status == 130, f"ends with {status} after Ctrl-C")
-            print(f"from a save to its picture, {len(times_ms)} saves: median {statistics.median(times_ms):.0f} ms, "
-                  f"95 % {times_ms[int(0.95 * len(times_ms))]:.0f} ms")
 
 
 main()

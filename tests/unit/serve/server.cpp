@@ -30,12 +30,14 @@ TEST(KnownHosts, AreThisMachineAndThoseOfAProxy) {
                                    "127.0.0.1.example.org", "[::2]:80", "hub.example.org.evil", "xlocalhost"})
         EXPECT_FALSE(is_known_host(host, others)) << host;
     EXPECT_FALSE(is_known_host("hub.example.org", {}));
+    EXPECT_TRUE(is_known_host("hub.example.org", std::vector<std::string>{"Hub.example.org:8443"}));
 }
 
 class ServerTest : public testing::Test {
   protected:
     static Response answer(const Request& request) {
         if (request.path == "fails") throw Error(ExitCode::kUsage, "no such number");
+        if (request.path == "throws") throw 1;
         std::string text = request.path + "|" + (request.is_post ? "post" : "get") + "|" + request.body;
         for (const auto& [name, value] : request.query) text += "|" + name + "=" + value;
         return text_response(200, text);
@@ -102,9 +104,13 @@ TEST_F(ServerTest, RefusesOtherHostsAndOrigins) {
     EXPECT_THAT(get("", "Host: evil.example\r\n"), HasSubstr("403"));
     EXPECT_THAT(get("", ""), Not(HasSubstr("200 OK")));
     EXPECT_THAT(get("", "Host: localhost:1\r\nOrigin: http://localhost:1\r\n"), HasSubstr("200 OK"));
-    EXPECT_THAT(get("", "Host: localhost:1\r\nOrigin: https://hub.example.org\r\n"), HasSubstr("200 OK"));
+    for (const char* const origin : {"https://hub.example.org", "https://Hub.example.org:8443"})
+        EXPECT_THAT(get("", std::string("Host: localhost:1\r\nOrigin: ") + origin + "\r\n"),
+                    HasSubstr("200 OK"))
+            << origin;
     for (const char* const origin :
-         {"http://evil.example", "http://localhost:2", "null", "http://localhost:1.evil.example"})
+         {"http://evil.example", "http://localhost:2", "null", "http://localhost:1.evil.example",
+          "https://hub.example.org.evil.example"})
         EXPECT_THAT(get("", std::string("Host: localhost:1\r\nOrigin: ") + origin + "\r\n"), HasSubstr("403"))
             << origin;
 }
@@ -117,6 +123,18 @@ TEST_F(ServerTest, RefusesMethodsAndLongBodies) {
                     body),
                 HasSubstr("413"));
     EXPECT_THAT(get("fails"), testing::AllOf(HasSubstr("400"), HasSubstr("no such number")));
+}
+
+TEST_F(ServerTest, RefusesBeforeItReadsABody) {
+    // The body never comes.
+    const std::string lines = " HTTP/1.1\r\nContent-Length: 1000000000\r\nHost: ";
+    EXPECT_THAT(ask("POST /" + std::string(32, '0') + "/number" + lines + "localhost\r\n"), HasSubstr("404"));
+    EXPECT_THAT(ask("POST " + base_ + "number" + lines + "evil.example\r\n"), HasSubstr("403"));
+}
+
+TEST_F(ServerTest, OutlivesAnythingThatIsThrown) {
+    EXPECT_EQ(get("throws"), "");
+    EXPECT_THAT(get("after"), HasSubstr("200 OK"));
 }
 
 TEST_F(ServerTest, NamesAPortThatIsTaken) {

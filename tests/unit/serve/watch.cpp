@@ -1,23 +1,29 @@
 #include "corda/serve/watch.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cstdint>
+#include <future>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "corda/media/defs.hpp"
 #include "corda/serve/file_watch.hpp"
 #include "support/command.hpp"
+#include "support/failure.hpp"
 #include "support/image_matchers.hpp"
 
 namespace corda::serve {
 namespace {
 
 using Json = nlohmann::json;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* kScene = R"(schema = 1
 [world]
@@ -149,6 +155,64 @@ TEST_F(WatchTest, NumbersChangeTheFilmAndTheFileOnlyWhenAsked) {
     EXPECT_EQ(save(replaced(file_before, "duration = 1.0", ""))["changes"], 0);  // of a number that is gone
 }
 
+TEST_F(WatchTest, AFrameStaysUntilItIsTaken) {
+    Watch watch({.path = path_, .settings = {}, .longest_side_px = 160, .picture_bytes = 1, .film = {}});
+    while (Json::parse(watch.answer({false, "state", {{"after", "0"}}, ""}).body)["busy"]) continue;
+    std::vector<std::future<Response>> frames;
+    for (int k = 0; k < 30; ++k)
+        frames.push_back(std::async(std::launch::async, [&watch, k] {
+            return watch.answer({false, fmt::format("frame/{}.png", k), {{"film", "1"}}, ""});
+        }));
+    for (std::future<Response>& frame : frames) EXPECT_EQ(frame.get().status, 200U);
+}
+
+TEST_F(WatchTest, TellsADivergenceBeforeItsFrameIsAskedFor) {
+    static_cast<void>(state());
+    const Json diverged = save(std::string(kScene) +
+                               "[camera]\ncenter = [0, 0]\nheight = 3\n[solver]\n"
+                               "method = \"relaxation\"\nforce = [1e300, 0.0]\n");
+    EXPECT_THAT(diverged["problems"].dump(), HasSubstr("diverge"));
+}
+
+TEST_F(WatchTest, NumbersAreThoseOfSettings) {
+    Watch watch({.path = path_,
+                 .settings = {"rope[0].hang.angle_deg=30", "world.gravity=[0,-2]"},
+                 .longest_side_px = 160,
+                 .film = {}});
+    auto next = [&watch, version = std::int64_t{0}]() mutable {
+        Json state;
+        do {
+            state =
+                Json::parse(watch.answer({false, "state", {{"after", std::to_string(version)}}, ""}).body);
+            version = state["version"];
+        } while (state["busy"]);
+        return state;
+    };
+    const auto post = [&watch](const std::string& path, const Json& body) {
+        return watch.answer({true, path, {}, body.dump()}).status;
+    };
+    const auto angle = [](const Json& state) {
+        for (const Json& number : state["numbers"])
+            if (number["key"] == "rope[0].hang.angle_deg") return number["value"].get<double>();
+        return 0.0;
+    };
+    EXPECT_EQ(angle(next()), 30.0);
+    EXPECT_EQ(post("number", {{"key", "world.duration"}, {"value", -2}}), 200U);
+    EXPECT_THAT(next()["problems"].dump(),
+                AllOf(HasSubstr("slider: world.duration: "), Not(HasSubstr("--set"))));
+    EXPECT_EQ(post("number", {{"key", "world.duration"}, {"value", nullptr}}), 200U);
+    static_cast<void>(next());
+    EXPECT_EQ(post("number", {{"key", "rope[0].hang.angle_deg"}, {"value", 80}}), 200U);  // that of the file
+    const Json changed = next();
+    EXPECT_EQ(changed["changes"], 1);
+    EXPECT_EQ(angle(changed), 80.0);
+    EXPECT_EQ(post("number", {{"key", "rope[0].hang.angle_deg"}, {"value", 45}}), 200U);
+    static_cast<void>(next());
+    EXPECT_EQ(post("write", Json::object()), 200U);
+    EXPECT_EQ(angle(next()), 45.0);
+    EXPECT_EQ(test::read_file(path_), replaced(kScene, "80.0", "45.0"));
+}
+
 TEST_F(WatchTest, PicturesHaveTheSizeThatIsAskedFor) {
     static_cast<void>(state());
     EXPECT_EQ(post("side", {{"px", 640}}).status, 200U);
@@ -158,6 +222,13 @@ TEST_F(WatchTest, PicturesHaveTheSizeThatIsAskedFor) {
     EXPECT_EQ(post("side", {{"px", 100000}}).status, 200U);
     EXPECT_EQ(state()["film"]["width"], 1280);  // that of the scene
     EXPECT_EQ(post("side", {{"px", "big"}}).status, 400U);
+}
+
+TEST(FileWatch, NamesAMissingFolder) {
+    const test::Failure failure = test::failure_of([] { const FileWatch file("/nowhere/a.toml"); });
+    EXPECT_EQ(failure.code, ExitCode::kIo);
+    EXPECT_THAT(failure.message, AllOf(HasSubstr("'/nowhere/a.toml'"), HasSubstr("check the path"),
+                                       Not(HasSubstr("inotify"))));
 }
 
 TEST(FileWatch, SeesOtherBytesAndAnotherFileUnderTheName) {
