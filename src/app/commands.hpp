@@ -189,8 +189,8 @@ struct EmptyPictures {
 
     /// `--fail-empty`.
     void add_to(CLI::App& command);
-    /// Warns of them; returns the exit code. `all`: how many pictures there are.
-    [[nodiscard]] ExitCode report(const Console& console, std::int64_t all) const;
+    /// Warns of them; returns the exit code. `all`: how many pictures there are. `camera`: the scene's.
+    [[nodiscard]] ExitCode report(const Console& console, std::int64_t all, const CameraDef& camera) const;
 };
 
 /// Reports the OpenGL driver and its platform with -v.

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -47,6 +48,15 @@ std::optional<std::string_view> misspelt_example(std::string_view name) {
     return meant && edit_distance(name, *meant) <= kMaxEdits ? meant : std::nullopt;
 }
 
+/// The file of the scene that a sweep file varies; empty for a scene.
+std::string scene_in(std::string_view text) {
+    constexpr std::string_view kKey = "\nscene = \"";
+    const std::size_t key = text.find(kKey);
+    if (key == std::string_view::npos) return "";
+    text.remove_prefix(key + kKey.size());
+    return std::string(text.substr(0, text.find('"')));
+}
+
 struct InitOptions {
     std::string name = "scene";
     bool force = false;
@@ -58,18 +68,24 @@ ExitCode write_scene(const Console& console, const InitOptions& options) {
     const std::string name = std::filesystem::path(path).stem().string();
     const Example* const named = find_example(name);
     const Example& example = named != nullptr ? *named : *find_example(kStart);
-    check_output(path, {}, options.force);
-    OutputFile file(path, {.force = options.force});
-    file.write(example.text);
-    file.commit();
+    std::vector<std::pair<std::string, std::string_view>> files{{path, example.text}};
+    const std::string scene = scene_in(example.text);
+    if (!scene.empty())
+        files.emplace_back((std::filesystem::path(path).parent_path() / scene).string(),
+                           find_example(std::filesystem::path(scene).stem().string())->text);
+    for (const auto& [file_path, text] : files) check_output(file_path, {}, options.force);
+    for (const auto& [file_path, text] : files) save_file(file_path, text, {.force = options.force});
     if (const auto meant = misspelt_example(name); meant && named == nullptr)
         console.warning(
             fmt::format("there is no example {}, and {} is the scene to start from; for the example "
                         "{}: corda init {}",
                         name, path, *meant, *meant));
-    console.info(fmt::format("example {}; draw it with: corda render {} -o {}.mp4", example.name, path,
-                             path.substr(0, path.size() - std::string_view(".toml").size())));
-    console.result(path);
+    const std::string stem = path.substr(0, path.size() - std::string_view(".toml").size());
+    console.info(scene.empty() ? fmt::format("example {}; draw it with: corda render {} -o {}.mp4",
+                                             example.name, path, stem)
+                               : fmt::format("example {}; make its samples with: corda sweep {} -o {}",
+                                             example.name, path, stem));
+    for (const auto& [file_path, text] : files) console.result(file_path);
     console.report({{"schema", 1}, {"output", path}, {"example", example.name}});
     return ExitCode::kOk;
 }
@@ -94,15 +110,16 @@ std::string_view example_text(std::string_view name) {
 }
 
 void add_init(CLI::App& app, Action& action) {
-    auto [command, options] =
-        add_command(app, action, "init", "write a commented scene to start from, or an example", write_scene);
+    auto [command, options] = add_command(
+        app, action, "init", "write a commented scene to start from, or an example of a scene or a sweep",
+        write_scene);
     command.add_option("NAME", options.name,
                        "an example, or any other name for the scene to start from; scene if left out");
     command.add_flag("--force", options.force, "replace an existing file");
 }
 
 void add_examples(CLI::App& app, Action& action) {
-    CLI::App* command = app.add_subcommand("examples", "list the scenes that init can write");
+    CLI::App* command = app.add_subcommand("examples", "list the scenes and sweeps that init can write");
     command->callback([&action] { action = list_examples; });
 }
 

@@ -62,8 +62,10 @@ RequestedFrames frames_of(const std::string& word, const Scene& scene) {
     } else if (const auto parsed = parse_frames(word)) {
         range = *parsed;
     } else {
+        const bool has_step = std::count(word.begin(), word.end(), ':') > 1;
         throw Error(ExitCode::kUsage,
-                    fmt::format("--frame {}: is neither a frame number nor a range FIRST:END of them", word));
+                    fmt::format("--frame {}: is neither a frame number nor a range FIRST:END of them{}", word,
+                                has_step ? "; a range has no step: list frames such as 0,24,48" : ""));
     }
     const std::int64_t end = range.end.value_or(count);
     if (range.first < 0 || range.first >= end || end > count) {

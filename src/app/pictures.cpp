@@ -226,7 +226,7 @@ ExitCode FigureOptions::write_one(const Console& console, const Scene& loaded,
     json["height"] = height_px;
     json["empty"] = empties.count;
     console.report(json);
-    return empties.report(console, is_sheet ? static_cast<std::int64_t>(some.size()) : 1);
+    return empties.report(console, is_sheet ? static_cast<std::int64_t>(some.size()) : 1, loaded.camera);
 }
 
 struct Still : RequestedTime {
@@ -341,7 +341,7 @@ ExitCode write_stills(const Console& console, FigureOptions options) {
     json["height"] = film.scene().video.height_px;
     json["empty"] = empty.count;
     console.report(json);
-    return empty.report(console, static_cast<std::int64_t>(stills.size()));
+    return empty.report(console, static_cast<std::int64_t>(stills.size()), scene.camera);
 }
 
 ExitCode write_strobe(const Console& console, FigureOptions options) {

@@ -108,15 +108,15 @@ void EmptyPictures::add_to(CLI::App& command) {
     command.add_flag("--fail-empty", are_failures, "exit 7 if nothing is in view in a picture");
 }
 
-ExitCode EmptyPictures::report(const Console& console, std::int64_t all) const {
+ExitCode EmptyPictures::report(const Console& console, std::int64_t all, const CameraDef& camera) const {
     if (count == 0) return ExitCode::kOk;
     const std::string which =
         all == 1 ? fmt::format("the picture at {:.6g} s is empty", first_s)
                  : fmt::format("{} of {} pictures are empty, the first at {:.6g} s", count, all, first_s);
-    console.warning(
-        fmt::format("{}: nothing is in view of the camera; change camera.center and "
-                    "camera.height, or leave them out, and all is in view",
-                    which));
+    console.warning(fmt::format(
+        "{}: nothing is in view of the camera; change {}, or leave them out, and all is in view", which,
+        camera.path.empty() ? "camera.center and camera.height"
+                            : "center and height of the keys of camera.path"));
     return are_failures ? ExitCode::kMismatch : ExitCode::kOk;
 }
 

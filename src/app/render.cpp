@@ -319,7 +319,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
         console.result(def.shard ? media::parts_path(options.output) : options.output);
     console.report(report(films, video, options, rendered, wall_s, gl.renderer));
     const EmptyPictures empty{options.empty.are_failures, rendered.empty_frames, rendered.first_empty_s};
-    return empty.report(console, rendered.frames);
+    return empty.report(console, rendered.frames, films.front().scene().camera);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
-#include <map>
 #include <memory>
 
 #include <fmt/format.h>
@@ -28,6 +27,8 @@ struct Columns {
     bool tensions = false;
     bool energy = false;
     bool diagnostics = false;
+
+    friend bool operator==(const Columns&, const Columns&) = default;
 };
 
 struct SimulateOptions {
@@ -255,6 +256,10 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
                                                   "them out, or give such a name",
                                                   options.output));
     }
+    if (options.output.empty() && (options.columns != Columns() || options.style != CsvStyle::kPoint))
+        console.warning(
+            "--velocity, --tension, --energy, --diagnostics and --decimal change the file of -o "
+            "alone; add -o FILE, or -o - for standard output");
     Scene scene = options.scene.load(console);
     const bool to_file = !options.output.empty() && !to_stdout;
     if (to_file) check_output(options.output, options.scene.path, options.force, OutputKind::kStream);
@@ -310,10 +315,13 @@ void add_simulate(CLI::App& app, Action& action) {
     command.add_flag("--diagnostics", options.columns.diagnostics,
                      "add energy error, strain, pin force and tension to every row");
     command
-        .add_option("--decimal", options.style,
-                    "decimal sign of CSV: point, or comma with semicolons between the cells")
-        ->transform(CLI::Transformer(
-            std::map<std::string, CsvStyle>{{"point", CsvStyle::kPoint}, {"comma", CsvStyle::kComma}}))
+        .add_option_function<std::string>(
+            "--decimal",
+            [&style = options.style](const std::string& word) {
+                style = word == "comma" ? CsvStyle::kComma : CsvStyle::kPoint;
+            },
+            "decimal sign of CSV: point, or comma with semicolons between the cells")
+        ->check(CLI::IsMember({"point", "comma"}))
         ->type_name("point|comma");
     command.add_flag("--force", options.force, "replace an existing output");
     command.add_flag("--dry-run", options.dry_run, "check everything and write nothing");

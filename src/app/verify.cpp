@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "corda/core/text.hpp"
+#include "corda/pipeline/provenance.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -14,7 +15,7 @@ struct VerifyOptions {
     std::string path;
 };
 
-nlohmann::json to_json(const std::string& path, const media::VerifyReport& report) {
+nlohmann::json to_json(const std::string& path, const media::VerifyReport& report, const Rational& speed) {
     return {{"schema", 1},
             {"file", path},
             {"ok", report.ok()},
@@ -28,6 +29,7 @@ nlohmann::json to_json(const std::string& path, const media::VerifyReport& repor
             {"width", report.width_px},
             {"height", report.height_px},
             {"fps", report.fps.text()},
+            {"speed", speed.text()},
             {"frames", report.frames},
             {"duration_s", report.duration_s.value()},
             {"duration_exact", report.duration_s.text()},
@@ -40,19 +42,30 @@ nlohmann::json to_json(const std::string& path, const media::VerifyReport& repor
             {"alpha", report.alpha}};
 }
 
+/// The seconds of the scene per second of the film; 1 for one that does not carry its scene.
+Rational speed_of(const std::string& path) {
+    try {
+        return scene_of(read_provenance(path), path).video.speed;
+    } catch (const Error&) {
+        return {1, 1};
+    }
+}
+
 ExitCode verify(const Console& console, const VerifyOptions& options) {
     const std::string& path = options.path;
     const media::VerifyReport report = media::verify_in_child(path);
+    const Rational speed = report.codec.empty() ? Rational{1, 1} : speed_of(path);
     if (!report.codec.empty()) {
         console.result(fmt::format(
-            "{}: {}{} {}x{}, {} at {} per second, {:.6g} s", path,
+            "{}: {}{} {}x{}, {} at {} per second, {:.6g} s{}", path,
             report.container == report.codec ? "" : report.container + " ", report.coding(), report.width_px,
-            report.height_px, counted(report.frames, "frame"), report.fps.text(), report.duration_s.value()));
+            report.height_px, counted(report.frames, "frame"), report.fps.text(), report.duration_s.value(),
+            speed == Rational{1, 1} ? "" : ", at speed " + speed.text()));
     }
     for (const std::string& note : report.notes) console.result("note: " + note);
     for (const std::string& problem : report.problems) console.result("problem: " + problem);
     if (report.ok()) console.result("ok");
-    console.report(to_json(path, report));
+    console.report(to_json(path, report, speed));
     return report.ok() ? ExitCode::kOk : ExitCode::kMismatch;
 }
 

@@ -195,7 +195,8 @@ std::string bodies_text(const System& system, const std::vector<std::size_t>& bo
     for (std::size_t i = 0; i < bodies.size();) {
         std::size_t last = i;
         while (last + 1 < bodies.size() && bodies[last + 1] == bodies[last] + 1 &&
-               system.bodies[bodies[last + 1]].is_net == system.bodies[bodies[i]].is_net)
+               system.bodies[bodies[last + 1]].is_net == system.bodies[bodies[i]].is_net &&
+               system.bodies[bodies[i]].label.empty() && system.bodies[bodies[last + 1]].label.empty())
             ++last;
         if (i > 0) text += ", ";
         text += body_name(system, bodies[i]);

@@ -25,14 +25,16 @@ test::CommandResult init_in(const test::ScratchFolder& folder, const std::string
 
 TEST(Gallery, ListsEveryExampleAndWritesIt) {
     const auto listed = nlohmann::json::parse(run_corda({"examples", "--json"}).out)["examples"];
-    const std::vector<std::string> scenes = test::list_files(CORDA_EXAMPLES, ".toml");
-    ASSERT_EQ(listed.size(), scenes.size());
+    ASSERT_EQ(listed.size(), test::list_files(CORDA_EXAMPLES, ".toml").size() +
+                                 test::list_files(kFolder + "sweep", ".toml").size());
     const test::ScratchFolder folder;
     const std::string plain = run_corda({"examples"}).out;
     for (const auto& example : listed) {
         const auto name = example["name"].get<std::string>();
-        ASSERT_EQ(init_in(folder, name).exit_code, 0) << name;
-        EXPECT_EQ(test::read_file(folder.file(name + ".toml")), test::read_file(kFolder + name + ".toml"));
+        ASSERT_EQ(init_in(folder, name + " --force").exit_code, 0) << name;
+        const bool is_scene = std::filesystem::exists(kFolder + name + ".toml");
+        EXPECT_EQ(test::read_file(folder.file(name + ".toml")),
+                  test::read_file(kFolder + (is_scene ? "" : "sweep/") + name + ".toml"));
         EXPECT_THAT(example["summary"].get<std::string>(), testing::SizeIs(testing::Gt(5U))) << name;
         EXPECT_THAT(plain, HasSubstr(name + " "));
     }
@@ -72,6 +74,16 @@ TEST(Init, WritesASceneThatDrawsSomething) {
     const auto drawn = run_corda({"still", folder.file("scene.toml"), "--at", "0.3", "--size", "320x180",
                                   "--fail-empty", "-o", folder.file("scene.svg")});
     EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+}
+
+TEST(Init, WritesASweepAndItsScene) {
+    const test::ScratchFolder folder;
+    const auto written = init_in(folder, "clips");
+    EXPECT_EQ(written.out, "clips.toml\nclip.toml\n");
+    EXPECT_THAT(written.err, HasSubstr("corda sweep clips.toml -o clips"));
+    EXPECT_EQ(run_corda({"sweep", folder.file("clips.toml"), "-o", folder.file("none"), "--check"}).exit_code,
+              7);
+    EXPECT_EQ(init_in(folder, "clips").exit_code, 6);
 }
 
 TEST(Init, TakesANewNameAndReplacesNothing) {

@@ -93,6 +93,10 @@ TEST_F(ExitCodes, SevenForEmptyPicturesWithFailEmpty) {
     EXPECT_THAT(run(still, away).out, HasSubstr("\"empty\": 1"));
     EXPECT_THAT(run(still, away).err, HasSubstr("the picture at 0 s is empty"));
     EXPECT_THAT(run(render, away).err, HasSubstr("pictures are empty, the first at 0 s"));
+    EXPECT_THAT(run(still, away).err, HasSubstr("change camera.center and camera.height"));
+    const std::string keys = "camera.path=[{ t = 0, center = [100, 0] }, { t = 0.1, center = [100, 0] }]";
+    EXPECT_THAT(run(still, {"--set", keys, "--set", "camera.height=2"}).err,
+                HasSubstr("change center and height of the keys of camera.path"));
 }
 
 TEST_F(ExitCodes, TwoForAnInvalidNumber) {
