@@ -166,8 +166,10 @@ TEST_P(AutoBoundsFound, IsTrue) {
 }
 
 // A link that a snap sends inwards slowly and that does not come back; steps that a run and its check divided
-// alike.
-INSTANTIATE_TEST_SUITE_P(Of, AutoBoundsFound, testing::Values(Found{"string_many", 97}, Found{"braced", 167}),
+// alike; a link that turns back right after a step.
+INSTANTIATE_TEST_SUITE_P(Of, AutoBoundsFound,
+                         testing::Values(Found{"string_many", 97}, Found{"braced", 167},
+                                         Found{"grazing_snap", 1783}),
                          [](const auto& param) {
                              return param.param.family + std::string("_") +
                                     std::to_string(param.param.number);

@@ -39,6 +39,8 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kNearTop = 0.25;
 /// Points tried to find a top; each adds some 30 % to the number of correct digits.
 constexpr int kTopPoints = 8;
+/// The true top may be between the samples although that of the parabola is beyond by this share of them.
+constexpr double kBeyond = 0.25;
 /// No point is tried nearer to the last one than this share of the interval: it would add no information.
 constexpr double kApart = 0.01;
 
@@ -75,6 +77,7 @@ StringEvents::StringEvents(std::size_t particles)
       rest_m_(link_count_),
       threshold_(link_count_),
       margin_((kParts + 1) * link_count_),
+      before_(link_count_),
       link_margin_(link_count_) {
     assert(particles >= 2);
 }
@@ -130,12 +133,14 @@ std::optional<double> StringEvents::first_in_step(Dop853& integrator, StringDyna
     if (knows_start_) {
         std::copy(row(kParts), row(kParts) + link_count_, row(0));
         largest_[0] = largest_[kParts];
+        std::copy(row(kParts - 1), row(kParts), before_.begin());
     } else {
         largest_[0] = measure(motion, start_s, row(0));
         if (largest_[0] >= 0.0) return start_s;
     }
     for (std::size_t j = 1; j <= kParts; ++j) {
         largest_[j] = measure(motion, time_s_[j], row(j));
+        if (j == 1 && knows_start_) add_misses_at_start();
         if (j >= 2) {
             if (const auto high = first_top(motion, j - 1)) {
                 return root(motion, {time_s_[j - 2], largest_[j - 2]}, *high);
@@ -146,6 +151,14 @@ std::optional<double> StringEvents::first_in_step(Dop853& integrator, StringDyna
     }
     knows_start_ = true;
     return std::nullopt;
+}
+
+void StringEvents::add_misses_at_start() {
+    for (std::size_t k = 0; k < link_count_; ++k) {
+        const double margin = row(0)[k];
+        if (is_taut_[k] == 0 && margin > before_[k] && margin > row(1)[k])
+            misses_.push_back({k, time_s_[0], -margin});
+    }
 }
 
 std::optional<StringEvents::Sample> StringEvents::first_top(const Motion& motion, std::size_t middle) {
@@ -178,12 +191,15 @@ std::optional<StringEvents::Sample> StringEvents::top(const Motion& motion, std:
             ((after.margin - middle.margin) / (after.time_s - middle.time_s) - rise) / whole_s;
         if (!(bend < 0.0)) return misses();
         double time_s = 0.5 * (before.time_s + middle.time_s) - 0.5 * rise / bend;
-        if (!(time_s > before.time_s && time_s < after.time_s)) return misses();
+        if (!(time_s > before.time_s - kBeyond * whole_s && time_s < after.time_s + kBeyond * whole_s))
+            return misses();
+        const double apart_s = kApart * whole_s;
+        if (time_s <= before.time_s) time_s = before.time_s + apart_s;
+        if (time_s >= after.time_s) time_s = after.time_s - apart_s;
         const double expected =
             before.margin + (time_s - before.time_s) * (rise + bend * (time_s - middle.time_s));
         const double height = std::max(expected, middle.margin) - std::min(before.margin, after.margin);
         if (!(expected + kNearTop * height >= 0.0)) return misses();
-        const double apart_s = kApart * whole_s;
         if (std::abs(time_s - middle.time_s) < apart_s) {
             const bool is_early = middle.time_s - before.time_s > after.time_s - middle.time_s;
             time_s = middle.time_s + (is_early ? -apart_s : apart_s);

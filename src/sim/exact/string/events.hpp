@@ -88,6 +88,8 @@ class StringEvents {
                                             Sample middle, Sample after);
     /// The earliest top() of all links within the two parts adjacent to this row.
     [[nodiscard]] std::optional<Sample> first_top(const Motion& motion, std::size_t middle);
+    /// Adds the links that turn back where the last step ended and this one starts, too near for top().
+    void add_misses_at_start();
     /// The time at which the largest margin changes its sign, on the side where it is not negative.
     [[nodiscard]] double root(const Motion& motion, Sample low, Sample high);
     [[nodiscard]] double* row(std::size_t part) { return &margin_[part * link_count_]; }
@@ -100,6 +102,7 @@ class StringEvents {
     bool knows_start_ = false;  ///< the last row is that of the next step's start
     std::array<double, kParts + 1> time_s_{};
     std::vector<double> margin_;                ///< [0 .. kParts][link]
+    std::vector<double> before_;                ///< the last row but one of the step before
     std::array<double, kParts + 1> largest_{};  ///< largest margin of all links
     // Scratch.
     std::vector<double> y_;
