@@ -62,13 +62,6 @@ BoundCase two_pins(Random& random) {
     return one_rope(random, rope, 4.0);
 }
 
-void throw_it(Random& random, RopeDef& rope) {
-    rope.pinned = {};
-    const double turn_1_s = pick_real(random, -10.0, 10.0);
-    const Vec2 all{pick_real(random, -3.0, 3.0), pick_real(random, -3.0, 3.0)};
-    for (const Vec2 point : rope.points_m) rope.velocity_m_s.push_back(all + turn_1_s * left_of(point));
-}
-
 BoundCase thrown(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 2, 10), any_angle(random), 1.0);
     throw_it(random, rope);
@@ -130,6 +123,13 @@ double pick_log(Random& random, double least, double most) {
 
 double any_angle(Random& random) {
     return pick_real(random, -std::numbers::pi, std::numbers::pi);
+}
+
+void throw_it(Random& random, RopeDef& rope) {
+    rope.pinned = {};
+    const double turn_1_s = pick_real(random, -10.0, 10.0);
+    const Vec2 all{pick_real(random, -3.0, 3.0), pick_real(random, -3.0, 3.0)};
+    for (const Vec2 point : rope.points_m) rope.velocity_m_s.push_back(all + turn_1_s * left_of(point));
 }
 
 RopeDef crooked_rope(Random& random, int links, double angle, double spread) {

@@ -28,6 +28,8 @@ struct BoundFamily {
 
 /// A rope of 1 m from (0, 0) in directions around `angle` from straight down, in radians.
 [[nodiscard]] RopeDef crooked_rope(Random& random, int links, double angle, double spread);
+/// Removes the pins of a rope and gives it a random velocity and angular velocity.
+void throw_it(Random& random, RopeDef& rope);
 /// Within -pi .. pi.
 [[nodiscard]] double any_angle(Random& random);
 [[nodiscard]] double pick_log(Random& random, double least, double most);

@@ -24,6 +24,21 @@ BoundCase mass_mix(Random& random) {
     return one_rope(random, rope, pick_real(random, 0.2, 0.8));
 }
 
+/// Masses that differ by up to 1e14 in a thrown rope without pins.
+BoundCase mass_mix_free(Random& random) {
+    RopeDef rope = crooked_rope(random, pick(random, 1, 5), any_angle(random),
+                                pick(random, 0, 1) == 0 ? 0.0 : pick_log(random, 1e-6, 1.0));
+    const double spread = pick_log(random, 1e2, 1e7);
+    for (std::size_t i = 0; i < rope.points_m.size(); ++i)
+        rope.mass_kg.push_back(pick_log(random, 1.0 / spread, spread));
+    throw_it(random, rope);
+    if (pick(random, 0, 1) == 0) {  // bent as well
+        for (Vec2& v : rope.velocity_m_s)
+            v = v + Vec2{pick_real(random, -3.0, 3.0), pick_real(random, -3.0, 3.0)};
+    }
+    return one_rope(random, rope, pick_real(random, 0.2, 0.8));
+}
+
 /// Share of a motion without forces that linear drag leaves until `time_s`: the integral of exp(-drag t).
 Real passed_s(const WorldDef& world, double time_s) {
     const Real drag_1_s = world.drag_1_s;
@@ -168,7 +183,7 @@ BoundCase parallelogram(Random& random) {
 
 std::span<const BoundFamily> mass_and_linkage_families() {
     static const auto families = std::to_array<BoundFamily>({{"mass_mix", mass_mix},
-
+                                                             {"mass_mix_free", mass_mix_free},
                                                              {"rhombus", rhombus},
                                                              {"parallelogram", parallelogram}});
     return families;
