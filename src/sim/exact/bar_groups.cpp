@@ -6,6 +6,8 @@
 #include <numeric>
 #include <optional>
 
+#include "corda/core/cancel.hpp"
+
 namespace corda::sim {
 namespace {
 
@@ -14,6 +16,8 @@ namespace {
 constexpr double kSameSide = 16.0 * std::numeric_limits<double>::epsilon();
 /// Cells are flat if the sine of their angle is below this. They could open into two motions.
 constexpr double kFlat = 1e-6;
+/// Bars looked at per update of count_work().
+constexpr std::size_t kBarsPerUpdate = 16;
 /// Finds the bars that turn together.
 class Joiner {
   public:
@@ -84,6 +88,7 @@ class Joiner {
         while (!to_do.empty()) {
             const std::uint32_t from = to_do.back();
             to_do.pop_back();
+            count_work(1);
             for (const auto& [particle, bar] : ends_[from]) {
                 if (held_[particle]) unite(bar, ground());
                 if (held_[particle] || find(bar) != find(ground())) continue;
@@ -113,6 +118,7 @@ class Joiner {
         const Vec2 base = along(b, c);
         for (const End& from_b : ends_[b]) {
             if (from_b.particle == c) continue;
+            count_work(1 + ends_[c].size() / kBarsPerUpdate);
             const Vec2 side = along(b, from_b.particle);
             const bool is_flat = std::abs(base.x * side.y - base.y * side.x) <=
                                  kFlat * rest_m * system_.bars[from_b.bar].rest_m;

@@ -83,6 +83,7 @@ void NetDynamics::grow_tree(const BarGroups& bars) {
     }
     for (std::size_t k = 0; k < to_do.size(); ++k) {
         const std::uint32_t from = to_do[k];
+        count_work(1);
         for (const std::uint32_t bar : bars_at[from]) {
             const std::uint32_t to = system_.bars[bar].a == from ? system_.bars[bar].b : system_.bars[bar].a;
             if (is_reached[to]) continue;
@@ -109,6 +110,7 @@ bool NetDynamics::turns_freely(const BarGroups& bars) const {
     std::vector<Vec2> at;
     for (std::size_t i = 0; i < system_.particle_count(); ++i) at.push_back({system_.x_m[i], system_.y_m[i]});
     for (const Arm& arm : arms_) at[arm.particle] = at[arm.parent] + times(arm.along_m, turned[arm.group]);
+    count_work(system_.bars.size());
     for (std::size_t k = 0; k < system_.bars.size(); ++k) {
         const auto [a, b, reach, rest_m] = system_.bars[k];
         const Vec2 start{system_.x_m[b] - system_.x_m[a], system_.y_m[b] - system_.y_m[a]};
@@ -231,13 +233,13 @@ void NetDynamics::measure_torques(const double* y) {
 void NetDynamics::solve() {
     // Gauss's elimination of the upper triangle, four rows at a time.
     constexpr std::size_t kRows = 4;
-    constexpr std::size_t kProductsPerUpdate = 1200;
+    constexpr std::size_t kProductsPerUpdate = 100;
     const std::size_t n = groups_;
-    count_work(n * n * n / kProductsPerUpdate);
     const auto row = [this, n](std::size_t k) { return inertia_kg_m2_.data() + k * n; };
     double* const right = right_.data();
     for (std::size_t first = 0; first < n; first += kRows) {
         const std::size_t end = std::min(first + kRows, n);
+        count_work((n - first) * (n - first) / kProductsPerUpdate);
         for (std::size_t k = first; k < end; ++k) {
             const double* const from = row(k);
             for (std::size_t i = k + 1; i < n; ++i) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "corda/core/cancel.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/rattle/chain_constraints.hpp"
 #include "corda/sim/rattle/graph_constraints.hpp"
@@ -130,6 +131,7 @@ class Rows {
             const std::uint32_t from = to_do.back();
             to_do.pop_back();
             for (const End& first : bars_at_[from]) {
+                count_work(1);
                 if (!find_row(from, first)) continue;
                 for (const std::uint32_t i : row_) {
                     inverse_mass_1_kg_[i] = 0.0;
@@ -168,6 +170,7 @@ class Rows {
         double length_m = first.rest_m;
         while (!is_held(end.particle)) {
             row_.push_back(end.particle);
+            count_work(1);
             const std::optional<End> onward = next(end.particle, direction);
             if (!onward) return false;
             length_m += onward->rest_m;

@@ -9,6 +9,11 @@
 #include <cmath>
 #include <cstdint>
 
+#include "corda/core/cancel.hpp"
+#include "corda/sim/exact/bar_groups.hpp"
+#include "corda/sim/rattle/constraint_solver.hpp"
+#include "support/cancel.hpp"
+#include "support/failure.hpp"
 #include "support/nets.hpp"
 #include "support/refusal_of.hpp"
 #include "support/solver_run.hpp"
@@ -129,6 +134,26 @@ TEST(NetDynamics, KeepsTheBitsOfAGridOf30By30) {
         for (const double x : *part) hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 1099511628211U;
     }
     EXPECT_EQ(hash, 3300129949250324325U);
+}
+
+TEST(NetDynamics, IsPreparedAndEliminatedInPartsThatCanBeCancelled) {
+    NetDef large = grid(150, 150, 0.01);
+    const System system = build_system({}, {&large, 1});
+    for (std::uint32_t i = 1; i < 150; ++i) large.pinned.push_back(i);
+    const System curtain = build_system({}, {&large, 1});
+    const auto expect_cancelled = [](const auto& work) {
+        const CancelScope never = test::cancel_after(0);
+        EXPECT_EQ(test::code_of(work), ExitCode::kInterrupted);
+    };
+    expect_cancelled([&] { static_cast<void>(inverse_masses_with_taut_rows_held(curtain)); });
+    expect_cancelled([&] { BarGroups(system, system.inverse_mass_1_kg); });
+
+    NetDynamics net(system, Forces(WorldDef{}));  // 298 groups, which take a cube of products
+    std::vector<double> slope(net.initial_state().size());
+    int checks = 0;
+    const CancelScope count([&checks] { return ++checks > 0; });
+    net.derivative(net.initial_state().data(), slope.data());
+    EXPECT_GE(checks, 2);
 }
 
 TEST(NetDynamics, RefusesWhatIsNoNetOfGroups) {
