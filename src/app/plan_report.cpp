@@ -42,16 +42,12 @@ void warn_of_unbounded(const Console& console, const Film& film) {
 }
 
 /// Warns of nets that stand still, probably by mistake.
-void warn_of_plates(const Console& console, const Film& film) {
-    for (std::size_t i = 0; i < film.plan().bodies.size(); ++i) {
-        if (!film.plan().bodies[i].stands_still) continue;
-        const std::string other = film.plan().bodies.size() == 1
-                                      ? "use method relaxation"
-                                      : "give it method relaxation in [[solver.bodies]]";
-        console.warning(
-            fmt::format("{} stands still: its bars make it a plate, and its pins hold it; pin one particle "
-                        "alone, let it stretch by a compliance, or {}",
-                        body_name(film.system(), i), other));
+void warn_of_still_nets(const Console& console, const Film& film) {
+    const Plan& plan = film.plan();
+    for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
+        const bool is_alone = plan.bodies.size() == 1;
+        if (const std::optional<std::string> text = still_text(plan.bodies[i], is_alone))
+            console.warning(fmt::format("{} stands still: {}", body_name(film.system(), i), *text));
     }
 }
 
@@ -86,7 +82,7 @@ void report_plan(const Console& console, Film& film) {
                                  plan_text(film.system(), film.plan()), *bound));
     }
     warn_of_unbounded(console, film);
-    warn_of_plates(console, film);
+    warn_of_still_nets(console, film);
     warn_of_horizon(console, film);
 }
 

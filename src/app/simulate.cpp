@@ -192,11 +192,15 @@ void warn_of_tensions(const Console& console, Film& film) {
                         [](double tension_n) { return std::isnan(tension_n); }))
             unknown.push_back(i);
     }
-    if (unknown.empty()) return;
-    console.warning(fmt::format(
-        "--tension: the tensions of {} are left empty: method relaxation has none, and bars that depend on "
-        "each other share them in any way; another solver.method or a compliance gives them",
-        bodies_text(system, unknown)));
+    for (const MethodGroup& group : groups_of(film.plan())) {
+        std::vector<std::size_t> bodies;
+        std::set_intersection(group.bodies.begin(), group.bodies.end(), unknown.begin(), unknown.end(),
+                              std::back_inserter(bodies));
+        if (bodies.empty()) continue;
+        console.warning(fmt::format("--tension: the tensions of {} are left empty: {}",
+                                    bodies_text(system, bodies),
+                                    unknown_tensions_text(film.plan().bodies[bodies.front()])));
+    }
 }
 
 bool is_npz(const std::string& output) {

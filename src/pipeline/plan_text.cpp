@@ -178,6 +178,29 @@ std::optional<std::string> horizon_reason(const BodyPlan& plan) {
            (plan.reason == PlanReason::kGraph ? " or bars come into line" : "");
 }
 
+std::optional<std::string> still_text(const BodyPlan& plan, bool is_alone) {
+    if (plan.stands_still == StandsStill::kNo) return std::nullopt;
+    if (plan.stands_still == StandsStill::kRow) {
+        return "it hangs from a straight row of bars between its pins, which cannot bend; pin one particle "
+               "alone, let the row sag, or let the net stretch by a compliance";
+    }
+    return std::string(
+               "its bars make it a plate, and its pins hold it; pin one particle alone, let it "
+               "stretch by a compliance, or ") +
+           (is_alone ? "use method relaxation" : "give it method relaxation in [[solver.bodies]]");
+}
+
+std::string unknown_tensions_text(const BodyPlan& plan) {
+    if (std::holds_alternative<RelaxationDef>(plan.method)) {
+        return plan.reason == PlanReason::kNamed
+                   ? "method relaxation has none; another solver.method gives them"
+                   : "auto takes method relaxation, which has none, because bars depend on each other at the "
+                     "start; bend collinear bars a little, or let them stretch by a compliance";
+    }
+    return "bars that depend on each other share them in any way, and a straight row between pins has none; "
+           "leave out bars that others imply, let the row sag, or let the bars stretch by a compliance";
+}
+
 std::vector<MethodGroup> groups_of(const Plan& plan) {
     std::vector<MethodGroup> groups;
     std::map<std::pair<MethodDef, PlanReason>, std::size_t> group_of;

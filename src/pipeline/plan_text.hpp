@@ -23,6 +23,13 @@ namespace corda {
 /// The reason for the horizon of a body; std::nullopt if it has none.
 [[nodiscard]] std::optional<std::string> horizon_reason(const BodyPlan& plan);
 
+/// Why a net never moves and what would let it; std::nullopt if it may. `is_alone`: the scene has no other
+/// body.
+[[nodiscard]] std::optional<std::string> still_text(const BodyPlan& plan, bool is_alone);
+
+/// Why the tensions of a body that this plan moves are unknown, and what would make them known.
+[[nodiscard]] std::string unknown_tensions_text(const BodyPlan& plan);
+
 /// Bodies with the same method for the same reason.
 struct MethodGroup {
     MethodDef method;

@@ -98,6 +98,7 @@ double Simulation::energy_change_j() const {
 void Simulation::set_outputs(const StateFields& fields) {
     if (fields == fields_) return;
     fields_ = fields;
+    if (fields_.tensions) find_tensions();
     read();
 }
 
@@ -108,28 +109,28 @@ void Simulation::read() {
         solver_->velocities(state_.vx_m_s, state_.vy_m_s);
     }
     if (!fields_.tensions) return;
-    const bool are_known = find_tensions();
     state_.tension_n = tension_n_;
-    if (!are_known && !fields_.unknown_tensions) {
+    if (!knows_tensions_ && !fields_.unknown_tensions) {
         throw Refusal(Refusal::Reason::kUnknownTensions,
                       "tensions are asked for, which the method does not know: relaxation has none, and bars "
                       "that depend on each other share them in any way");
     }
 }
 
-bool Simulation::find_tensions() {
+void Simulation::find_tensions() {
     tension_n_.assign(system_.bars.size(), 0.0);
-    return solver_->tensions(tension_n_);
+    knows_tensions_ = solver_->tensions(tension_n_);
 }
 
 void Simulation::observe() {
     const FlushDenormals flush;
+    find_tensions();
     read();
     figures_.strain = max_strain(system_, state_);
     figures_.energy_change_j = solver_->energy_j() - initial_energy_j_;
     figures_.energy_error = sim::energy_error(energy_change_j(), energy_scale_j_);
     figures_.loads = std::nullopt;
-    if (find_tensions()) figures_.loads = load_meter_->of(system_, state_, tension_n_);
+    if (knows_tensions_) figures_.loads = load_meter_->of(system_, state_, tension_n_);
     largest_ = sim::larger_figures(largest_, figures_);
     if (!branched_s_ && solver_->has_branched()) branched_s_ = state_.time_s;
 }

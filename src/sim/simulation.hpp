@@ -91,15 +91,15 @@ class Simulation {
   private:
     void observe();
     void read();
-    /// Writes tension_n_. Returns false if a method does not know them.
-    bool find_tensions();
+    void find_tensions();
 
     System system_;
     std::unique_ptr<sim::Solver> solver_;
     std::unique_ptr<sim::LoadMeter> load_meter_;
     State state_;
     State next_;                     ///< kept for its memory
-    std::vector<double> tension_n_;  ///< scratch
+    std::vector<double> tension_n_;  ///< of state_
+    bool knows_tensions_ = false;    ///< false if a method does not know them
     StateFields fields_;
     bool has_diverged_ = false;
     bool is_stepping_ = false;  ///< stays true if an exception ended the steps
@@ -134,6 +134,13 @@ enum class PlanReason {
     kDependent,  ///< the bars depend on each other at the start, in a way that no method can follow
 };
 
+/// The reason why a net of rigid bars never moves.
+enum class StandsStill {
+    kNo,     ///< it moves, or the scene names the method
+    kPlate,  ///< its bars make it rigid, and its pins hold it
+    kRow,    ///< a straight row of bars between pins holds it
+};
+
 /// The method that moves a body and, if `auto` chose it, the proof that it is good enough.
 struct BodyPlan {
     MethodDef method;  ///< with every default filled in: given again, it runs with the same bits
@@ -144,8 +151,8 @@ struct BodyPlan {
     /// The last frame time at which a run and a much tighter one agree within the tolerance: later positions
     /// are those of one possible motion. std::nullopt if the scene ends before.
     std::optional<double> horizon_s;
-    bool diverges = false;      ///< the run ends before the scene does
-    bool stands_still = false;  ///< a net that its bars make rigid and its pins hold
+    bool diverges = false;  ///< the run ends before the scene does
+    StandsStill stands_still = StandsStill::kNo;
     bool undecided = false;     ///< rounding decides on a snap of a string after the horizon
     std::vector<Trial> trials;  ///< all that were run, the chosen one last
     int passes = 0;             ///< number of integrations of the motion, including checks and failed trials

@@ -167,7 +167,7 @@ TEST_F(Output, SimulateWritesTheTensionsThatAMethodKnowsAndWarnsOfTheRest) {
         "[solver]\nmethod = \"relaxation\"\n[[solver.bodies]]\nropes = [1]\nmethod = \"exact\"\n");
     const auto result = run_corda({"simulate", mixed, "-o", "-", "--tension", "--decimal", "comma"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_THAT(result.err, HasSubstr("--tension: the tensions of rope 0 are left empty"));
+    EXPECT_THAT(result.err, HasSubstr("--tension: the tensions of rope 0 are left empty: method relaxation"));
     EXPECT_THAT(result.out, testing::StartsWith("t;x0;y0;x1;y1;x2;y2;x3;y3;tension0_n;tension1_n\n"
                                                 "0;0;0;0;-1;0;0;0;-1;;9,81"));
 }
@@ -268,6 +268,15 @@ TEST_F(Output, WarnsAboutAnImmobileNetUntilTheAdviceIsFollowed) {
         EXPECT_EQ(result.exit_code, 0) << result.err;
         EXPECT_THAT(result.err, Not(HasSubstr("stands still"))) << advice;
     }
+    // A curtain whose top row is straight between its pins.
+    const auto curtain = [&](const std::string& advice) {
+        return run_corda({"plan", plate, "--set", "net[0].grid.diagonals=false", "--set", advice}).err;
+    };
+    EXPECT_THAT(curtain("net[0].pinned=[0, 4]"),
+                HasSubstr("net 0 stands still: it hangs from a straight row"));
+    for (const char* advice :
+         {"net[0].pinned=[0]", "net[0].compliance=1e-3", "net[0].pinned=[0, 1, 2, 3, 4]"})
+        EXPECT_THAT(curtain(advice), Not(HasSubstr("stands still"))) << advice;
     // With a string, which relaxation cannot move.
     const std::string scene =
         test::read_file(plate) + "[[rope]]\nhang = { links = 2, length = 1.0 }\nstring = true\n";

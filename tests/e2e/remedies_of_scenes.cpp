@@ -1,5 +1,6 @@
 // Like remedies.cpp, for messages about shapes, materials and keys of a scene.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "support/remedy.hpp"
@@ -386,6 +387,24 @@ INSTANTIATE_TEST_SUITE_P(
                 {{"\"tension\"", "\"strain\""}},
                 {{kGrid, kGrid + "compliance = 1e-4\n"}}}}),
     test::kNameOfCase);
+
+TEST(UnknownTensions, HaveACauseAndARemedyThatHelps) {
+    const ScratchFolder folder;
+    const std::string plate =
+        folder.write("plate.toml",
+                     "schema = 1\n[world]\nduration = 0.1\n[[net]]\npinned = [0]\n"
+                     "grid = { columns = 3, rows = 3, spacing = 0.1, diagonals = true }\n");
+    const auto warning = [&](const std::string& setting) {
+        return run_corda({"simulate", plate, "-o", "-", "--tension", "--set", setting}).err;
+    };
+    EXPECT_THAT(warning("solver.method=auto"),
+                testing::AllOf(testing::HasSubstr("bars that depend on each other"),
+                               testing::Not(testing::HasSubstr("relaxation"))));
+    EXPECT_THAT(warning("net[0].compliance=1e-3"), testing::Not(testing::HasSubstr("--tension")));
+    const std::string relaxed = warning("solver.method=relaxation");
+    EXPECT_THAT(relaxed, testing::AllOf(testing::HasSubstr("another solver.method gives them"),
+                                        testing::Not(testing::HasSubstr("compliance"))));
+}
 
 }  // namespace
 }  // namespace corda

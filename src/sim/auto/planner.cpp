@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "corda/core/cancel.hpp"
+#include "corda/sim/rattle/constraint_solver.hpp"
 #include "corda/sim/rattle/rattle.hpp"
 #include "corda/sim/system.hpp"
 
@@ -248,22 +249,24 @@ BodyPlan record_named(const System& system, const WorldDef& world, const PlanDef
     return plan;
 }
 
-/// True if a recorded body never moves because it is a rigid plate (by Maxwell's count of its bars) held by
-/// its pins.
-bool stands_still(const System& system, const Recording& recording) {
+/// The reason why a recorded body never moves: it is a rigid plate, by Maxwell's count of its bars, or its
+/// pins hold a straight row.
+StandsStill why_still(const System& system, const Recording& recording) {
     constexpr double kStill = 1e-9;  // of the length
     const Body& body = system.bodies.front();
     const auto pins = std::count(system.inverse_mass_1_kg.begin(), system.inverse_mass_1_kg.end(), 0.0);
-    if (!body.is_net || body.material.compliance_1_n > 0.0 || body.bar_count + 3 < 2 * body.particle_count ||
-        pins < 2)
-        return false;
+    if (!body.is_net || body.material.compliance_1_n > 0.0 || pins < 2) return StandsStill::kNo;
     MotionBounds start;
     start.include({0.0, system.x_m, system.y_m});
     const double still_m = kStill * links_length_m(system, body);
     const auto near = [still_m](Vec2 a, Vec2 b) {
         return std::abs(a.x - b.x) <= still_m && std::abs(a.y - b.y) <= still_m;
     };
-    return near(start.min_m(), recording.bounds().min_m()) && near(start.max_m(), recording.bounds().max_m());
+    if (!near(start.min_m(), recording.bounds().min_m()) || !near(start.max_m(), recording.bounds().max_m()))
+        return StandsStill::kNo;
+    if (body.bar_count + 3 >= 2 * body.particle_count) return StandsStill::kPlate;
+    const bool holds_row = inverse_masses_with_taut_rows_held(system) != system.inverse_mass_1_kg;
+    return holds_row ? StandsStill::kRow : StandsStill::kNo;
 }
 
 /// Combines the plans of the bodies, and counts how often all particles together were integrated.
@@ -345,7 +348,7 @@ Plan plan_methods(const System& system, const NamedMethods& named, const WorldDe
         BodyPlan& made =
             plan.bodies.emplace_back(named[i] ? record_named(body, world, of_body, *named[i], own)
                                               : plan_body(body, world, of_body, own));
-        made.stands_still = made.reason != PlanReason::kNamed && stands_still(body, own);
+        if (made.reason != PlanReason::kNamed) made.stands_still = why_still(body, own);
         known.include(own.bounds());
         if (count > 1) recording.add_body(own, system.bodies[i].first_particle, system.bodies[i].first_bar);
     });

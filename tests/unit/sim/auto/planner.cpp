@@ -226,18 +226,26 @@ TEST(AutoPlans, ReportTheProgressOfAllBodies) {
     EXPECT_LE(falls, trials);  // each begins at 0
 }
 
-TEST(AutoPlans, RecogniseANetThatIsHeldRigidly) {
-    NetDef net = test::cloth(5, 4, 0.1);
-    for (const bool is_held : {true, false}) {
-        if (!is_held) net.pinned = {0};
+TEST(AutoPlans, RecogniseANetThatIsHeldStill) {
+    const auto why_still = [](const NetDef& net) {
         const System system = build_system({}, {&net, 1});
         const Timeline timeline(kFrames, 10);
         Recording recording(system.particle_count(), timeline.size(), 0);
         const PlanDef def{[](const MotionBounds&) { return 1e-3; }, timeline, {}, {}};
         const Plan plan = plan_methods(system, NamedMethods(1), WorldDef{}, def, recording);
-        EXPECT_EQ(plan.bodies.front().stands_still, is_held);
         EXPECT_TRUE(plan.error_bound_m.has_value());
-    }
+        return plan.bodies.front().stands_still;
+    };
+    NetDef plate = test::cloth(5, 4, 0.1);
+    EXPECT_EQ(why_still(plate), StandsStill::kPlate);
+    NetDef curtain = plate;
+    std::erase_if(curtain.bars, [](const NetBar& bar) { return !bar.is_real; });
+    EXPECT_EQ(why_still(curtain), StandsStill::kRow);
+    curtain.velocity_m_s.back() = {1.0, 0.0};
+    EXPECT_EQ(why_still(curtain), StandsStill::kNo);
+    plate.pinned = curtain.pinned = {0};
+    EXPECT_EQ(why_still(plate), StandsStill::kNo);
+    EXPECT_EQ(why_still(test::leaning_net(4, 3, 0.1)), StandsStill::kNo);
 }
 
 }  // namespace
