@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/command.hpp"
+#include "support/files.hpp"
 #include "support/remedy.hpp"
 
 namespace corda {
@@ -404,6 +406,41 @@ TEST(UnknownTensions, HaveACauseAndARemedyThatHelps) {
     const std::string relaxed = warning("solver.method=relaxation");
     EXPECT_THAT(relaxed, testing::AllOf(testing::HasSubstr("another solver.method gives them"),
                                         testing::Not(testing::HasSubstr("compliance"))));
+}
+
+TEST(ImmobileNets, AreReportedUntilTheAdviceIsFollowed) {
+    using testing::HasSubstr;
+    using testing::Not;
+    const ScratchFolder folder;
+    const std::string plate = folder.write("plate.toml",
+                                           "schema = 1\n[[net]]\ngrid = { columns = 5, rows = 4, spacing = "
+                                           "0.1, diagonals = true }\n[world]\nduration = 0.2\n");
+    EXPECT_THAT(run_corda({"plan", plate}).err, HasSubstr("net 0 stands still: its bars make it a plate"));
+    for (const char* advice : {"net[0].pinned=[0]", "net[0].compliance=1e-3", "solver.method=relaxation"}) {
+        const auto result = run_corda({"plan", plate, "--set", advice});
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_THAT(result.err, Not(HasSubstr("stands still"))) << advice;
+    }
+    // A curtain whose top row is straight between its pins.
+    const auto curtain = [&](const std::string& advice) {
+        return run_corda({"plan", plate, "--set", "net[0].grid.diagonals=false", "--set", advice}).err;
+    };
+    EXPECT_THAT(curtain("net[0].pinned=[0, 4]"),
+                HasSubstr("net 0 stands still: it hangs from a straight row"));
+    for (const char* advice :
+         {"net[0].pinned=[0]", "net[0].compliance=1e-3", "net[0].pinned=[0, 1, 2, 3, 4]"})
+        EXPECT_THAT(curtain(advice), Not(HasSubstr("stands still"))) << advice;
+    // With a string, which relaxation cannot move.
+    const std::string scene =
+        test::read_file(plate) + "[[rope]]\nhang = { links = 2, length = 1.0 }\nstring = true\n";
+    const std::string both = folder.write("both.toml", scene);
+    EXPECT_THAT(run_corda({"plan", both}).err,
+                HasSubstr("or give it method relaxation in [[solver.bodies]]"));
+    const std::string mixed =
+        folder.write("mixed.toml", scene + "[[solver.bodies]]\nnets = [0]\nmethod = 'relaxation'\n");
+    const auto result = run_corda({"plan", mixed});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.err, Not(HasSubstr("stands still")));
 }
 
 }  // namespace
