@@ -117,12 +117,13 @@ async function apply() {
     const accept = pictures.filter((picture) => stateOf(picture) === "accept").map((picture) => picture.name);
     byId("apply").disabled = true;
     const response = await post("apply", {accept});
-    byId("outcome").textContent = response.ok ? `${(await response.json()).changed} written` : await response.text();
+    const outcome = response.ok ? `${(await response.json()).changed} written` : await response.text();
     await load();
+    byId("outcome").textContent = outcome;
 }
 
 async function end() {
-    await post("end");
+    await post("end").catch(() => {});  // the program may end before it has answered
     byId("status").textContent = "the review has ended";
     for (const button of document.querySelectorAll("button")) button.disabled = true;
 }
