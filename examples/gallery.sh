@@ -9,20 +9,28 @@ cd "$root/examples"
 
 # A plain background keeps the files small. The rate is one that GIF can hold.
 look=(--size 640x360 -q --force --set 'style.background="#121828"')
-"$corda" render start.toml --fps 100/3 --duration 3.4 "${look[@]}" -o pictures/start.gif
+"$corda" render fifty_pendulums.toml --fps 25 --frames 140:215 "${look[@]}" --size 480x270 -o pictures/fifty_pendulums.gif
+"$corda" render methods/{relaxation,rattle,exact}.toml --panels 3x1 --frames 120:121 "${look[@]}" --size 640x240 \
+    -o pictures/methods_%d.png
+mv pictures/methods_120.png pictures/methods.png
 
-# Name, command and times of each picture.
-while read -r name command times; do
-    "$corda" "$command" "$name.toml" --at "$times" "${look[@]}" --set overlay.time=false -o "pictures/$name.png"
+# Name, command and times of each picture, and its own options.
+while read -r name command times more; do
+    # shellcheck disable=SC2086
+    "$corda" "$command" "$name.toml" --at "$times" "${look[@]}" --set overlay.time=false $more -o "pictures/$name.png"
 done <<'END'
 bars            still  2.0
 bridge          still  0.6
 cloth           still  1.5
 double_pendulum still  5.3
+fifty_pendulums still  7.2 --set overlay.time=true
 first           strobe 0,0.1,0.2,0.3,0.4,0.5,0.6
 folded_chain    still  0.58
 hammock         still  0.6
 materials       still  0.6
+pendulum_wave   still  4
+period          still  6
+portrait        still  2.4 --size 360x640 --set overlay.time=true
 relaxation      still  2.5
 start           strobe 0,0.2,0.3,0.4,0.5
 string          still  0.42
@@ -31,5 +39,6 @@ three_ropes     still  0.9
 throw           strobe 0,0.6,1.2,2,3,4,4.9
 trapeze         strobe 0,1
 whip            strobe 0,0.3,0.45,0.6,0.75,0.9
+whip_crack      still  0.62 --set overlay.time=true
 wrecking_ball   strobe 0,0.9,1.4,1.8,2.2,2.7,3.5
 END

@@ -36,7 +36,10 @@ TEST_P(Examples, EqualTheReferenceByteForByte) {
             const pipeline::SceneRenderer::Use use(renderer);
             const CameraDef camera = renderer.fit(motion);
             for (const State& state : states) {
-                renderer.draw(state, renderer.map_of(camera));
+                const view::Camera map = renderer.map_of(camera);
+                view::Caption caption;
+                renderer.locate_labels(state, map, caption);
+                renderer.draw(state, map, caption);
                 const Image expected =
                     render::render_reference(test::draw_list_of(scene, film.system(), camera, state, motion));
                 EXPECT_TRUE(test::equal_images(renderer.image(), expected))
