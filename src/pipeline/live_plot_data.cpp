@@ -31,7 +31,7 @@ constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 /// Motion below this share of the scene's initial size, and of that per duration, is drawn as rest.
 constexpr double kStill = 1e-3;
 /// Maximum number of bodies with a curve each.
-constexpr std::size_t kMaxCurves = 16;
+constexpr std::size_t kMaxCurves = 64;
 
 /// The parts of a scene that plots show.
 struct Subject {
@@ -50,11 +50,15 @@ struct Subject {
         turning.resize(std::min(turning.size(), kMaxCurves));
     }
 
-    /// Curves of bodies, with names if the scene has others.
+    /// Curves of bodies, with names if the scene has others; of many, only labels tell them apart.
     [[nodiscard]] std::vector<PlotData::Curve> curves() const {
+        const std::size_t bodies = system.bodies.size();
         std::vector<PlotData::Curve> curves;
-        for (const TrackedParticle& one : turning)
-            curves.push_back({.name = system.bodies.size() > 1 ? name_of(one.body) : "", .body = one.body});
+        for (const TrackedParticle& one : turning) {
+            const bool is_named =
+                bodies > 1 && (bodies <= kMaxBodies || !system.bodies[one.body].label.empty());
+            curves.push_back({.name = is_named ? name_of(one.body) : "", .body = one.body});
+        }
         return curves;
     }
 

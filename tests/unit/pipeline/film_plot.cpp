@@ -147,6 +147,16 @@ plots = ["divergence", "angle", "tip"]
     EXPECT_EQ(plots[2].curves[0].name, "x of A");
 }
 
+TEST(FilmPlot, NamesManyRopesByTheirLabelsAlone) {
+    Film film(plotted_scene(
+        "angle", {"world.duration=0.1", "rope[0].copies={count=70,angle_deg=0.1}", "rope[0].label=first"}));
+    const view::PlotData data = plot_of(film);
+    ASSERT_EQ(data.curves.size(), 64U);
+    EXPECT_EQ(data.curves[0].name, "first");
+    for (std::size_t i = 1; i < data.curves.size(); ++i) EXPECT_EQ(data.curves[i].name, "") << i;
+    EXPECT_NEAR(data.curves[63].points.front().y, 90.0 + 6.3, 1e-9);
+}
+
 TEST(FilmPlot, SpeaksTheLanguageOfTheSceneButKeepsLabels) {
     const Scene scene = parse_scene(R"(schema = 1
 [world]
