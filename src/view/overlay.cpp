@@ -92,8 +92,7 @@ Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int he
     : def_(def),
       side_px_(std::min(width, height)),
       em_px_(def.text_px ? rounded(*def.text_px) : em_of(width, height)),
-      edge_px_(edge_of(side_px_, em_px_)),
-      interval_s_(interval_s) {
+      edge_px_(edge_of(side_px_, em_px_)) {
     const PlotLayout layout = lay_out_plots(def.plots.size(), width, height);
     width_ = layout.width_px;
     height_ = layout.height_px;

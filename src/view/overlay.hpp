@@ -104,7 +104,6 @@ class Overlay {
     int em_px_;
     int edge_px_;  ///< from the edges of the frame to the texts
     std::vector<std::string> title_lines_;
-    double interval_s_;
     int decimals_ = 2;
     Font font_;
     std::vector<PlotPanel> plots_;
