@@ -93,14 +93,13 @@ struct Kind {
 };
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-const PlotData::AxisName kTime{"t", "s"};
 
 /// In the order of LivePlot.
-const Kind kKinds[] = {
+constexpr Kind kKinds[] = {
     {[](const Subject& subject) -> PlotData {
          using Hue = PlotData::Hue;
          const double speed_m_s = subject.size_m / subject.end_s;
-         return {kTime,
+         return {{"t", "s"},
                  {subject.word("energy"), "J", kStill * subject.mass_kg * speed_m_s * speed_m_s},
                  subject.end_s,
                  {{subject.word("kinetic"), Hue::kKinetic},
@@ -114,7 +113,7 @@ const Kind kKinds[] = {
                  {.y = sample.energy.kinetic_j + potential_j}};
      }},
     {[](const Subject& subject) -> PlotData {
-         return {kTime, {subject.word("angle"), "°", kStill, "φ"}, subject.end_s, subject.curves()};
+         return {{"t", "s"}, {subject.word("angle"), "°", kStill, "φ"}, subject.end_s, subject.curves()};
      },
      [](const Subject&, const Sample& sample) {
          std::vector<CurvePoint> values;
@@ -131,7 +130,7 @@ const Kind kKinds[] = {
      [](const Subject&, const Sample& sample) { return sample.turns; }},
     {[](const Subject& subject) -> PlotData {
          const std::string name = subject.name_of(0) + " – " + subject.name_of(1);
-         return {kTime,
+         return {{"t", "s"},
                  {subject.word("distance of the tips"), "m", 0.0, subject.word("distance"), true},
                  subject.end_s,
                  {{subject.system.bodies.size() > 2 ? name : ""}}};
@@ -148,7 +147,7 @@ const Kind kKinds[] = {
                                    ? fmt::format(fmt::runtime(subject.word("x of {}")),
                                                  subject.name_of(body_of(subject.system, tip)))
                                    : "x";
-         return {kTime,
+         return {{"t", "s"},
                  {subject.word("position"), "m", kStill * subject.size_m},
                  subject.end_s,
                  {{x, PlotData::Hue::kX}, {"y", PlotData::Hue::kY}}};
