@@ -74,6 +74,13 @@ report::Table largest_table(const Film& film, const MotionSummary& motion) {
     return table;
 }
 
+std::string times_text(const std::vector<double>& times_s) {
+    std::string text;
+    for (std::size_t i = 0; i < times_s.size(); ++i)
+        text += fmt::format("{}{:.4g}", i == 0 ? "" : i + 1 == times_s.size() ? " and " : ", ", times_s[i]);
+    return text + " s";
+}
+
 void add_pictures(const Film& film, const FigureTimes& times, const WritePoses& write,
                   report::Chapter& chapter) {
     const std::string name = printable(film.scene().name);

@@ -94,13 +94,6 @@ std::string left_out_text(const System& system, const MotionSummary& motion) {
     return fmt::format(" {} more bod{} not shown.", count, count == 1 ? "y is" : "ies are");
 }
 
-std::string times_text(const std::vector<double>& times_s) {
-    std::string text;
-    for (std::size_t i = 0; i < times_s.size(); ++i)
-        text += fmt::format("{}{:.4g}", i == 0 ? "" : i + 1 == times_s.size() ? " and " : ", ", times_s[i]);
-    return text + " s";
-}
-
 bool shows_on_white(Color color) {
     constexpr double kContrast = 2.0;
     constexpr double kGlare = 0.05;

@@ -46,9 +46,6 @@ struct AxisDef {
 /// "1.25 s"
 [[nodiscard]] std::string time_text(double time_s);
 
-/// "0, 0.5 and 1 s"
-[[nodiscard]] std::string times_text(const std::vector<double>& times_s);
-
 /// Whether lines of a colour can be seen on white: a contrast of 2 or more, as WCAG 2.1 defines it.
 [[nodiscard]] bool shows_on_white(Color color);
 

@@ -12,7 +12,6 @@
 #include "corda/core/cancel.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/figures/chart.hpp"
 #include "corda/figures/drawings.hpp"
 #include "corda/figures/motion_summary.hpp"
 #include "corda/figures/period_theory.hpp"
@@ -269,7 +268,7 @@ Cell cell_of(const sweep::SweepDef& sweep, std::int64_t number, int side_px) {
         };
         const FigureTimes times = find_figure_times(film, read_motion(film, no_rows, {}), {});
         const std::vector<double>& times_s = times.strobe_s;
-        cell.lines.push_back("t = " + times_text(times_s));
+        cell.lines.push_back(fmt::format("{} poses, t = 0 .. {:.4g} s", times_s.size(), times_s.back()));
         cell.image = render::render_reference(FilmRenderer::list_poses(film, times_s));
     } catch (const Error& error) {
         if (!sweep::is_refusal(error.code())) throw;
