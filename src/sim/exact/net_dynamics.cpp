@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "corda/core/cancel.hpp"
+#include "corda/core/cpu.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/exact/bar_groups.hpp"
 #include "corda/sim/rattle/constraint_solver.hpp"
@@ -204,7 +205,7 @@ std::vector<ErrorScale> NetDynamics::error_scales() const {
     return scales;
 }
 
-void NetDynamics::measure_torques(const double* y) {
+CORDA_AVX2_CLONES void NetDynamics::measure_torques(const double* y) {
     const double* const c = y;
     const double* const s = y + groups_;
     const double* const w = y + 2 * groups_;
@@ -230,7 +231,7 @@ void NetDynamics::measure_torques(const double* y) {
     }
 }
 
-void NetDynamics::solve() {
+CORDA_AVX2_CLONES void NetDynamics::solve() {
     // Gauss's elimination of the upper triangle, four rows at a time.
     constexpr std::size_t kRows = 4;
     constexpr std::size_t kProductsPerUpdate = 100;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "corda/core/cpu.hpp"
 #include "corda/sim/exact/dop853.hpp"
 #include "corda/sim/system.hpp"
 
@@ -57,9 +58,9 @@ class NetDynamics final : public Dynamics {
     void set_start(const System& system);
     /// Replaces right_ by the angular accelerations that these torques cause, or the angular velocities that
     /// these angular momenta have. inertia_ is overwritten.
-    void solve();
+    CORDA_AVX2_CLONES void solve();
     /// Writes inertia_ of the state to its upper triangle. Adds to right_ the torques of centrifugal forces.
-    void measure_torques(const double* y);
+    CORDA_AVX2_CLONES void measure_torques(const double* y);
     [[nodiscard]] Vec2 turn(const double* y, std::size_t group) const {
         return group < groups_ ? Vec2{y[group], y[groups_ + group]} : Vec2{1.0, 0.0};
     }
