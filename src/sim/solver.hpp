@@ -24,13 +24,14 @@ struct GridTime {
     double fraction = 0.0;   ///< of the next step, if not
 };
 
-/// Locates a time on the grid. A time within 1e-9 of n steps counts as n steps, because times from fractions
-/// or decimal text are rounded.
+/// Locates a time on the grid. A time within a relative 1e-9 of n steps, and within a millionth of a step,
+/// counts as n steps, because times from fractions or decimal text are rounded.
 inline GridTime locate(double time_s, double step_s) {
     constexpr double kTolerance = 1e-9;
+    constexpr double kMaxTolerance = 1e-6;                    // a day has 1e8 steps
     const double steps = std::min(time_s / step_s, 0x1p+62);  // what an integer holds
     const double nearest = std::round(steps);
-    if (std::abs(steps - nearest) <= kTolerance * std::max(1.0, nearest))
+    if (std::abs(steps - nearest) <= std::min(kTolerance * std::max(1.0, nearest), kMaxTolerance))
         return {static_cast<std::uint64_t>(nearest), true, 0.0};
     const double whole = std::floor(steps);
     return {static_cast<std::uint64_t>(whole), false, steps - whole};

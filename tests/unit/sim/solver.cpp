@@ -134,6 +134,9 @@ TEST(StepGrid, LocatesTimesBetweenSteps) {
     EXPECT_FALSE(locate(0.1 * (1.0 + 2e-9), 0.1).is_on_grid);
     EXPECT_TRUE(locate(0.1 * (1.0 + 0.5e-9), 0.1).is_on_grid);
     EXPECT_EQ(locate(0.1 * (1.0 - 2e-9), 0.1).step, 0U);
+    // After a million periods of a pendulum, a tenth of a step is not rounding.
+    EXPECT_NEAR(locate(2.4e6 + 0.1 / 60.0, 1.0 / 60.0).fraction, 0.1, 1e-6);
+    EXPECT_TRUE(locate(144000001 / 60.0, 1.0 / 60.0).is_on_grid);
 }
 
 TEST(Methods, HaveACostOfAStepThatGrowsWithOrderAndSweeps) {
