@@ -57,18 +57,18 @@ constexpr Colors colors_of(const std::array<std::uint32_t, 9>& rgb) {
 // Our own, in B. Ottosson's colour space Oklab (2020): even steps of lightness, so that the colour-blind can
 // read them, away from that of the theme's ground.
 
-/// Lightness 0.56 to 0.95, violet, blue, green, yellow.
+/// Lightness 0.64 to 0.95, violet, blue, green, yellow.
 constexpr Colors kDark =
-    colors_of({0x795bce, 0x527be8, 0x039be3, 0x0bb4cd, 0x0bcaba, 0x1fe09e, 0x8fe97b, 0xcbf065, 0xfff465});
-/// 0.67 to 0.27, ochre, red, purple.
+    colors_of({0x9074e9, 0x6791ff, 0x2faef7, 0x30c4dd, 0x2ed7c7, 0x34eaa7, 0x95f081, 0xcef368, 0xfff466});
+/// 0.61 to 0.27, ochre, red, purple.
 constexpr Colors kPaper =
-    colors_of({0xb09308, 0xb07a06, 0xae6105, 0xab4501, 0xa9170a, 0x92002e, 0x78003c, 0x5a004e, 0x3a0056});
+    colors_of({0x9b8100, 0x9d6c01, 0x9c5601, 0x9b3d00, 0x9d0a00, 0x87012a, 0x710038, 0x57004b, 0x3a0056});
 /// 0.90 and 0.88, 0.60 in the middle: blue, grey, orange.
 constexpr Colors kDarkAboutZero =
     colors_of({0xb1e8fe, 0x65d6ff, 0x45bde7, 0x57a2be, 0x808080, 0xb78c5a, 0xdb9d4f, 0xfdae47, 0xfece96});
-/// 0.33 and 0.38, 0.68 in the middle: blue, grey, brown.
+/// 0.33 and 0.38, 0.61 in the middle: blue, grey, brown.
 constexpr Colors kPaperAboutZero =
-    colors_of({0x002b81, 0x0d42a8, 0x3561b4, 0x5d7dba, 0x989898, 0xb56b58, 0xae462d, 0x9b2501, 0x791b01});
+    colors_of({0x002b81, 0x073da2, 0x2b57a9, 0x4e6da9, 0x838383, 0xa45c49, 0xa23b22, 0x932200, 0x791b01});
 
 constexpr double kRare = 1.0 / 50.0;
 constexpr double kFarBeyond = 2.0;

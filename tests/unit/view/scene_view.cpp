@@ -92,8 +92,8 @@ TEST(SceneView, MergedBodiesAreOneTintedLayerInAGradient) {
     EXPECT_TRUE(list.layers[1].is_tinted);
     EXPECT_EQ(list.layers[1].capsule_count, 15U);
     const auto tint = [&](std::size_t i) { return list.capsules.at(5 + 5 * i).tint; };
-    EXPECT_EQ(tint(0), (Tint{0x79, 0x5b, 0xce}));  // the ends of the dark theme's scale
-    EXPECT_EQ(tint(2), (Tint{0xff, 0xf4, 0x65}));
+    EXPECT_EQ(tint(0), (Tint{0x90, 0x74, 0xe9}));  // the ends of the dark theme's scale
+    EXPECT_EQ(tint(2), (Tint{0xff, 0xf4, 0x66}));
     EXPECT_NE(tint(1), tint(0));
     EXPECT_GT(list.capsules[5].halo_radius, 0.0F);
     styles[2].color = Color{1, 2, 3, 255};
