@@ -4,7 +4,7 @@
 // src/render/coverage.hpp, with operations whose results IEEE 754 fixes to the last bit. Change both together.
 
 flat in vec4 capsule_axis;
-flat in vec3 capsule_extent;
+flat in vec4 capsule_extent;
 
 layout(location = 0) out vec2 mask; // capsule, halo
 #ifdef TINTED
@@ -30,12 +30,12 @@ void add_tint(float along, uint coverage) {
 }
 #endif
 
-float coverage_within(float radius, float distance_px) {
+float coverage_within(float radius, float distance_px, float strength) {
     precise float inner = min(distance_px + 0.5, radius);
     precise float outer = max(distance_px - 0.5, -radius);
     precise float overlap = inner - outer;
     precise float coverage = min(max(overlap, 0.0), 1.0);
-    precise float scaled = coverage * 255.0;
+    precise float scaled = coverage * strength;
     precise float rounded = scaled + 0.5;
     return floor(rounded) * (1.0 / 255.0);
 }
@@ -67,7 +67,8 @@ void main() {
         }
         distance_px = squared * inverse;
     }
-    mask = vec2(coverage_within(capsule_extent.y, distance_px), coverage_within(capsule_extent.z, distance_px));
+    mask = vec2(coverage_within(capsule_extent.y, distance_px, capsule_extent.w),
+                coverage_within(capsule_extent.z, distance_px, 255.0));
 #ifdef TINTED
     add_tint(along, uint(mask.x * 255.0 + 0.5));
 #endif

@@ -3,7 +3,7 @@
 // and the driver's raster rules never decide a pixel.
 
 layout(location = 0) in vec4 axis;   // a.x, a.y, u.x, u.y in pixels, y down
-layout(location = 1) in vec3 extent; // length, radius, radius of the halo
+layout(location = 1) in vec4 extent; // length, radius, radius of the halo, strength
 #ifdef TINTED
 layout(location = 2) in uvec4 tint; // r, g, b, weight
 
@@ -14,7 +14,7 @@ uniform vec2 frame_size;
 uniform float edge_margin;
 
 flat out vec4 capsule_axis;
-flat out vec3 capsule_extent;
+flat out vec4 capsule_extent;
 
 void main() {
     float margin = max(extent.y, extent.z) + edge_margin;

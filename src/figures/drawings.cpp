@@ -94,7 +94,10 @@ Scene look_in_print(const Scene& scene, double width_mm) {
     for (std::optional<double>* width_px :
          {&style.rope_width_px, &style.net_width_px, &style.marker_radius_px, &style.bar_width_px})
         scale(*width_px, factor);
-    for (BodyStyleDef& body : look.body_styles) scale(body.width_px, factor);
+    for (BodyStyleDef& body : look.body_styles) {
+        scale(body.width_px, factor);
+        scale(body.end_width_px, factor);
+    }
     look.overlay.plots.clear();
     look.overlay.text_px = kLetterPt / kPointsPerInch * report::kPrintPpi;
     return look;

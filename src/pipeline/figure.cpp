@@ -121,27 +121,6 @@ Color gap_color(const view::Look& look) {
             mixed(ground.b, look.support.b)};
 }
 
-/// "t = 0.25 s" for each time, all with the same number of digits: enough to be exact, or at least to be
-/// distinct if that takes many digits.
-std::vector<std::string> captions_of(const std::vector<double>& times_s, Language language) {
-    constexpr int kFewDigits = 3;
-    constexpr int kMaxDigits = 9;
-    std::vector<std::string> captions;
-    double steps_1_s = 1.0;  // of the last digit
-    for (int digits = 1; digits <= kMaxDigits; ++digits) {
-        captions.clear();
-        bool is_exact = true;
-        steps_1_s *= 10.0;
-        for (const double time_s : times_s) {
-            captions.push_back(view::time_label(fmt::format("{:.{}f}", time_s, digits), language));
-            is_exact &= std::abs(std::round(time_s * steps_1_s) / steps_1_s - time_s) < 1e-9;
-        }
-        const bool are_apart = std::adjacent_find(captions.begin(), captions.end()) == captions.end();
-        if (is_exact || (digits >= kFewDigits && are_apart)) break;
-    }
-    return captions;
-}
-
 /// A contact sheet without the pictures in its cells.
 view::DrawList list_captions(const Film& film, const FigureDef& def) {
     const view::Look look = view::look_of(film.scene().style);
@@ -153,7 +132,8 @@ view::DrawList list_captions(const Film& film, const FigureDef& def) {
     list.height = def.height_px;
     list.ground = {gap, gap};
     view::Font font;
-    const std::vector<std::string> captions = captions_of(def.times_s, film.scene().overlay.language);
+    std::vector<std::string> captions = view::digits_of(def.times_s);
+    for (std::string& caption : captions) caption = view::time_label(caption, film.scene().overlay.language);
     int size_px = sheet.text_px();
     const auto widest_px = [&] {
         int widest = 0;

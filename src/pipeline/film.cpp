@@ -59,7 +59,9 @@ struct Film::Impl {
         const CancelScope starting = reporting_start();
         return run->motion.emplace(system, scene.world, pipeline::if_all_named(run->named), timeline(),
                                    def.motion_budget_bytes, quantity_of(scene.style.color_by),
-                                   def.readings.with(plot_data.readings()));
+                                   def.readings.with(plot_data.readings())
+                                       .with(view::fields_of(scene.style.arrows))
+                                       .with({.velocities = scene.style.trail_s > 0.0}));
     }
 
     /// Required while the motion is read.
@@ -101,18 +103,16 @@ struct Film::Impl {
     const CameraDef& find_camera_locked() {
         if (camera) return *camera;
         if (drawing.renderer.needs_motion()) motion.run_to_end();
+        const auto state_at = [this](double time_s) -> const State& { return motion.at(time_s); };
         if (!scene.overlay.plots.empty()) {
-            plots = plot_data.read(
-                motion.methods(), last_s_locked(),
-                [this](double time_s) -> const State& { return motion.at(time_s); },
-                [this](const State& state) { return motion.energy_of(state); });
+            plots = plot_data.read(motion.methods(), last_s_locked(), state_at,
+                                   [this](const State& state) { return motion.energy_of(state); });
         }
+        if (scene.style.arrows != Arrows::kNone)
+            arrows = drawing.renderer.arrow_extents(last_s_locked(), state_at);
         CameraDef fitted = fit_locked(drawing.renderer);
-        if (scene.camera.moves()) {
-            track = drawing.renderer.track(
-                scene.camera.follow ? last_s_locked() : 0.0,
-                [this](double time_s) -> const State& { return motion.at(time_s); }, fitted);
-        }
+        if (scene.camera.moves())
+            track = drawing.renderer.track(scene.camera.follow ? last_s_locked() : 0.0, state_at, fitted);
         return camera.emplace(fitted);
     }
 
@@ -128,6 +128,7 @@ struct Film::Impl {
     /// Fits a renderer to the motion.
     CameraDef fit_locked(pipeline::SceneRenderer& renderer) const {
         if (!plots.empty()) renderer.set_plots(plots);
+        if (arrows) renderer.set_arrows(*arrows);
         // The start exists even if the first step diverges.
         const sim::Recording& recording = motion.recording();
         return renderer.fit(recording.size() > 0 ? recording.particle_bounds() : bounds_of_start(system),
@@ -180,29 +181,25 @@ struct Film::Impl {
         view::DrawList list;
         view.start(list);
         view.draw_trails(drawing.trails.to(read(times_s.back(), drawing)), map, list);
+        std::vector<view::PoseTime> poses;
         for (std::size_t k = 0; k < times_s.size(); ++k) {
             check_cancelled();
-            const std::size_t first_layer = list.layers.size();
-            view.draw_pose(read(times_s[k], drawing), map, list);
             const double opacity = view::pose_opacity(k, times_s.size());
-            for (std::size_t l = first_layer; l < list.layers.size(); ++l) {
-                Color& color = list.layers[l].color;
-                color.a = static_cast<std::uint8_t>(std::lround(opacity * color.a));
-            }
+            poses.push_back(renderer.add_pose(read(times_s[k], drawing), map, opacity, list));
             if (k > 0 && list.capsules.size() > kMaxPoseCapsules) {
                 throw Error(ExitCode::kUsage,
                             fmt::format("{} of {} poses have over {} lines in all; ask for fewer times",
                                         k + 1, times_s.size(), kMaxPoseCapsules));
             }
         }
-        const State& last = read(times_s.back(), drawing);
-        view.draw_supports(last, map, list);
+        view.draw_supports(drawing.state, map, list);
         view::Caption caption = caption_of(drawing, map);
         if (times_s.size() > 1) {  // the picture has no single time
             caption.time_s.reset();
             caption.energy_error.reset();
+            renderer.annotate_poses(times_s, std::move(poses), list);
         }
-        renderer.draw_curves(last.time_s, list);
+        renderer.draw_curves(times_s.back(), list);
         renderer.annotate(caption, map, list);
         return list;
     }
@@ -308,6 +305,7 @@ struct Film::Impl {
     pipeline::Motion& motion;
     Plan& plan;
     std::vector<view::PlotData> plots;
+    std::optional<view::ArrowExtents> arrows;
     std::optional<CameraDef> camera;
     std::optional<view::CameraTrack> track;  ///< of a camera that moves
     State asked;                             ///< returned last by at()
@@ -473,7 +471,8 @@ pipeline::SharedMotion& FilmRenderer::motion_of(Film& film) {
 }
 
 Film FilmRenderer::another_look(const Film& film, const Scene& look) {
-    if (!look.overlay.plots.empty() || look.style.color_by != film.scene().style.color_by)
+    if (!look.overlay.plots.empty() || look.style.color_by != film.scene().style.color_by ||
+        look.style.arrows != film.scene().style.arrows || look.style.trail_s > film.scene().style.trail_s)
         throw Error(ExitCode::kInternal, "another look of a film needs what its motion does not have");
     return Film(std::make_unique<Film::Impl>(*film.impl_, look));
 }

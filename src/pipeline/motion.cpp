@@ -21,6 +21,10 @@ constexpr double kMaxPoints = 400.0;
 /// A point closer to the end, in frame intervals, gives its segment no direction.
 constexpr double kTooClose = 1e-6;
 
+view::TrailPoint trail_point(const State& state, std::size_t i) {
+    return {0.0, {state.x_m[i], state.y_m[i]}, {state.vx_m_s[i], state.vy_m_s[i]}};
+}
+
 thread_local const SharedMotion::Activity* innermost = nullptr;  ///< of this thread
 
 }  // namespace
@@ -188,7 +192,7 @@ void TrailRecorder::read(Motion& motion, double end_s) {
     if (particles_.empty()) return;
     for (; time_s(points_) <= end_s; ++points_) {
         const State& state = motion.at(time_s(points_));
-        for (const std::size_t i : particles_) at_m_.push_back({state.x_m[i], state.y_m[i]});
+        for (const std::size_t i : particles_) recorded_.push_back(trail_point(state, i));
     }
 }
 
@@ -200,9 +204,11 @@ const std::vector<view::Trail>& TrailRecorder::to(const State& state) {
     for (std::size_t p = 0; p < particles_.size(); ++p) {
         view::Trail& trail = trails_[p];
         trail.clear();
-        for (std::size_t k = first; k < end; ++k)
-            trail.push_back({state.time_s - time_s(k), at_m_[k * particles_.size() + p]});
-        trail.push_back({0.0, {state.x_m[particles_[p]], state.y_m[particles_[p]]}});
+        for (std::size_t k = first; k < end; ++k) {
+            trail.push_back(recorded_[k * particles_.size() + p]);
+            trail.back().age_s = state.time_s - time_s(k);
+        }
+        trail.push_back(trail_point(state, particles_[p]));
     }
     return trails_;
 }

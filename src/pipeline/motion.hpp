@@ -161,8 +161,8 @@ class TrailRecorder {
     std::vector<std::size_t> particles_;
     double trail_s_;
     FrameRate fps_;
-    std::int64_t stride_;     ///< frames per point
-    std::vector<Vec2> at_m_;  ///< per point: all particles
+    std::int64_t stride_;                     ///< frames per point
+    std::vector<view::TrailPoint> recorded_;  ///< per point: all particles, without ages
     std::size_t points_ = 0;
     std::vector<view::Trail> trails_;
 };

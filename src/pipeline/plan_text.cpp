@@ -51,7 +51,8 @@ std::string_view remedy(Refusal::Reason reason) {
         case Reason::kMaterial:
             return "remove compliance, string and bending, or use method auto";
         case Reason::kUnknownTensions:
-            return "set style.color_by = \"strain\" or \"speed\", or let the bars stretch by a compliance";
+            return "set style.color_by = \"strain\" or \"speed\", style.arrows = \"velocity\", "
+                   "or let the bars stretch by a compliance";
     }
     return "";
 }

@@ -96,10 +96,24 @@ CameraDef SceneRenderer::fit(std::span<const MotionBounds> motion, const sim::Hi
                             scene_->video.height_px, overlay_.insets());
 }
 
-double SceneRenderer::height_about(std::span<const MotionBounds> motion) const {
+view::ArrowExtents SceneRenderer::arrow_extents(
+    double end_s, const std::function<const State&(double time_s)>& state_at) const {
+    view::ArrowExtents extents;
+    for (std::int64_t k = 0; k == 0 || scene_->video.scene_rate().time_s(k) <= end_s; ++k) {
+        check_cancelled();
+        for (const view::Arrow& arrow : view_.arrows().of(state_at(scene_->video.scene_rate().time_s(k))))
+            extents.include(arrow);
+    }
+    return extents;
+}
+
+double SceneRenderer::height_about(std::span<const MotionBounds> motion,
+                                   const view::ArrowExtents& arrows) const {
     const CameraDef about{Vec2{}, {}, scene_->camera.margin};
-    return view::fit_camera(about, {}, view_.drawn_bodies(motion), scene_->video.width_px,
-                            scene_->video.height_px, overlay_.insets())
+    std::vector<view::Drawn> drawn = view_.drawn_bodies(motion);
+    view_.arrows().list(drawn, &arrows);
+    return view::fit_camera(about, {}, drawn, scene_->video.width_px, scene_->video.height_px,
+                            overlay_.insets())
         .height_m.value();
 }
 
@@ -121,13 +135,16 @@ view::CameraTrack SceneRenderer::track(double end_s,
     path = smoothed(path, std::llround(half));
     if (!scene_->camera.height_m) {
         std::vector<MotionBounds> about(system_->particle_count());
+        view::ArrowExtents arrows;
         for (std::size_t k = 0; k < times_s.size(); ++k) {
             check_cancelled();
             const State& state = state_at(times_s[k]);
             for (std::size_t i = 0; i < about.size(); ++i)
                 about[i].include(state.x_m[i] - path[k].x, state.y_m[i] - path[k].y);
+            for (const view::Arrow& arrow : view_.arrows().of(state))
+                arrows.include({arrow.at_m - path[k], arrow.value});
         }
-        camera.height_m = height_about(about);
+        camera.height_m = height_about(about, arrows);
     }
     for (std::size_t k = 0; k < times_s.size(); ++k)
         keys.push_back({times_s[k], system_->origin_m + path[k], *camera.height_m});
@@ -195,6 +212,26 @@ bool SceneRenderer::would_show_nothing(const State& state, const view::Camera& m
 Damage SceneRenderer::draw(view::DrawList list) {
     list_ = std::move(list);
     return paint();
+}
+
+view::PoseTime SceneRenderer::add_pose(const State& state, const view::Camera& map, double opacity,
+                                       view::DrawList& list) const {
+    const std::size_t first_layer = list.layers.size();
+    view_.draw_pose(state, map, list);
+    for (std::size_t l = first_layer; l < list.layers.size(); ++l) {
+        Color& color = list.layers[l].color;
+        color.a = static_cast<std::uint8_t>(std::lround(opacity * color.a));
+    }
+    const view::BodyLabel label = view_.label_at(tip_of(*system_), "");
+    return {label, map.at(state, label.particle), map.at(state, label.from), opacity};
+}
+
+void SceneRenderer::annotate_poses(std::span<const double> times_s, std::vector<view::PoseTime> poses,
+                                   view::DrawList& list) {
+    const std::vector<std::string> digits = view::digits_of(times_s);
+    for (std::size_t k = 0; k < poses.size(); ++k)
+        poses[k].label.text = view::localized(digits[k] + " s", scene_->overlay.language);
+    overlay_.draw_times(poses, list);
 }
 
 std::vector<std::uint8_t> SceneRenderer::mask(const State& state, const view::Camera& map) {
@@ -267,6 +304,12 @@ struct Renderer::Impl {
             throw Error(ExitCode::kInvalidScene,
                         "style: color_by is a quantity of a motion, and a Renderer draws positions alone; "
                         "choose kBody or kLink");
+        }
+        if (scene.style.arrows != Arrows::kNone) {
+            throw Error(
+                ExitCode::kInvalidScene,
+                "style: arrows have the scale of a motion, and a Renderer draws positions alone; leave "
+                "them out");
         }
         if (!scene.overlay.plots.empty()) {
             throw Error(

@@ -61,6 +61,14 @@ class SceneRenderer {
     [[nodiscard]] view::CameraTrack track(double end_s,
                                           const std::function<const State&(double time_s)>& state_at,
                                           CameraDef& camera) const;
+    /// The extents of arrows up to `end_s`, at whose frame times `state_at` is called in order.
+    [[nodiscard]] view::ArrowExtents arrow_extents(
+        double end_s, const std::function<const State&(double time_s)>& state_at) const;
+    /// Sets the scale of arrows, before fit().
+    void set_arrows(const view::ArrowExtents& extents) {
+        view_.set_arrows(extents);
+        overlay_.set_arrows(view_.arrows().pixels_per_unit(), extents.largest());
+    }
     /// Sets the data of the live plots.
     void set_plots(std::span<const view::PlotData> data) { overlay_.set_plots(data, view_.body_colors()); }
     /// Lower bound on the scale of the camera that fit() returns for a motion within `bounds`.
@@ -110,10 +118,16 @@ class SceneRenderer {
     void locate_labels(const State& state, const view::Camera& map, view::Caption& caption) const {
         view::locate(overlay_.labels(), state, map, caption);
     }
-    /// Adds the overlay to a list, without the curves of the plots.
+    /// Adds the overlay to a list, without the lines of draw_curves().
     void annotate(const view::Caption& caption, const view::Camera& map, view::DrawList& list) {
         overlay_.draw(caption, map.pixels_per_metre(), list);
     }
+    /// Adds one of several poses to a list; returns the place of its time.
+    [[nodiscard]] view::PoseTime add_pose(const State& state, const view::Camera& map, double opacity,
+                                          view::DrawList& list) const;
+    /// Adds the times of all poses.
+    void annotate_poses(std::span<const double> times_s, std::vector<view::PoseTime> poses,
+                        view::DrawList& list);
     void draw_curves(double time_s, view::DrawList& list) const { overlay_.draw_curves(time_s, list); }
     [[nodiscard]] const view::SceneView& view() const { return view_; }
     /// The last picture.
@@ -125,8 +139,9 @@ class SceneRenderer {
 
   private:
     /// Height of a picture whose middle is the origin of these bounds of each particle, so that all bodies
-    /// are in view.
-    [[nodiscard]] double height_about(std::span<const MotionBounds> motion) const;
+    /// and arrows are in view.
+    [[nodiscard]] double height_about(std::span<const MotionBounds> motion,
+                                      const view::ArrowExtents& arrows) const;
     void open(Needs needs);
     /// Fills list_ with a state and its traces, without the caption.
     void list(const State& state, const view::Camera& map, const Traces& traces);

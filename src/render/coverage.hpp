@@ -35,12 +35,12 @@ namespace corda::render {
 
 /// Coverage of a pixel by the points within `radius` of a segment, 0 .. 255; 0 for `radius` 0. It is the
 /// overlap of the capsule's width with a box filter one pixel wide, which also holds for lines thinner than a
-/// pixel.
-[[nodiscard]] inline std::uint32_t coverage_within(float radius, float distance_px) {
+/// pixel. `strength`: that of a pixel that lies within.
+[[nodiscard]] inline std::uint32_t coverage_within(float radius, float distance_px, float strength = 255.0F) {
     const float inner = std::min(distance_px + 0.5F, radius);
     const float outer = std::max(distance_px - 0.5F, -radius);
     const float coverage = std::min(std::max(inner - outer, 0.0F), 1.0F);
-    return static_cast<std::uint32_t>(coverage * 255.0F + 0.5F);
+    return static_cast<std::uint32_t>(coverage * strength + 0.5F);
 }
 
 /// v / 255, rounded to the nearest integer, for 0 <= v <= 255 * 255.

@@ -27,8 +27,9 @@ constexpr int kHeight = 72;
 /// A trial takes 0.1 s; its memory is not limited.
 constexpr ChildLimits kTrialLimits{std::uint64_t{1} << 46U, 10, 10.0};
 
-/// A gradient with lines and discs, with and without halo, wide and thin, opaque and transparent, which
-/// overlap and extend beyond the edge; some are tinted if `with_tints`. `shift_px` moves them.
+/// A gradient with lines and discs, with and without halo, wide and thin, opaque and faded, in opaque and
+/// transparent layers, which overlap and extend beyond the edge; some are tinted if `with_tints`. `shift_px`
+/// moves them.
 view::DrawList test_picture(double shift_px, bool with_tints) {
     view::DrawList list;
     list.width = kWidth;
@@ -41,7 +42,7 @@ view::DrawList test_picture(double shift_px, bool with_tints) {
             const double x = shift_px + (is_opaque ? 3.3 : 40.7);
             const double y = is_tinted ? 30.2 : 8.6;
             list.add_capsule({x, y}, {x + 31.0, y + 9.4}, 3.7, 2.5, {10, 200, 90, 1});
-            list.add_capsule({x + 31.0, y + 9.4}, {x + 12.5, y + 33.1}, 0.4, 0.0, {240, 20, 250, 1});
+            list.add_capsule({x + 31.0, y + 9.4}, {x + 12.5, y + 33.1}, 0.4, 0.0, {240, 20, 250, 1}, 0.7);
             list.add_capsule({x + 12.5, y + 20.0}, {x + 12.5, y + 20.0}, 8.2, 1.0, {40, 90, 255, 64});
         }
     }

@@ -153,7 +153,7 @@ void FrameRenderer::make_tints() {
 }
 
 void FrameRenderer::set_capsule_layout() {
-    static_assert(std::is_standard_layout_v<view::Capsule> && sizeof(view::Capsule) == 8 * sizeof(float));
+    static_assert(std::is_standard_layout_v<view::Capsule> && sizeof(view::Capsule) == 9 * sizeof(float));
     glBindVertexArray(capsule_array_.id());
     // The first bind of a name creates the buffer.
     glBindBuffer(GL_ARRAY_BUFFER, capsule_buffer_.id());
@@ -164,7 +164,7 @@ void FrameRenderer::set_capsule_layout() {
         glVertexAttribBinding(attribute, 0);
     }
     glVertexAttribFormat(0, 4, GL_FLOAT, GL_FALSE, offsetof(view::Capsule, ax));
-    glVertexAttribFormat(1, 3, GL_FLOAT, GL_FALSE, offsetof(view::Capsule, length));
+    glVertexAttribFormat(1, 4, GL_FLOAT, GL_FALSE, offsetof(view::Capsule, length));
     glVertexAttribIFormat(2, 4, GL_UNSIGNED_BYTE, offsetof(view::Capsule, tint));
 }
 

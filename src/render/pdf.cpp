@@ -93,7 +93,8 @@ class Pdf : public VectorPage {
         check(cairo_status(cairo_.get()));
     }
 
-    void draw(const view::DrawList& list, int x_px, int y_px) override {
+    void draw(const view::DrawList& given, int x_px, int y_px) override {
+        const view::DrawList list = in_even_layers(given);
         cairo_t* const cairo = cairo_.get();
         cairo_save(cairo);
         cairo_translate(cairo, x_px, y_px);

@@ -25,13 +25,13 @@ void unite(const view::Capsule& capsule, bool is_tinted, const PixelRect& box, i
             const float center_y = static_cast<float>(y) + 0.5F;
             const float distance_px = segment_distance_px(capsule, center_x, center_y);
             const std::size_t i = static_cast<std::size_t>(y) * width + x;
-            const auto add = [distance_px](std::uint8_t& united, float radius) {
-                united = std::max(united, static_cast<std::uint8_t>(coverage_within(radius, distance_px)));
+            const auto add = [](std::uint8_t& united, std::uint32_t coverage) {
+                united = std::max(united, static_cast<std::uint8_t>(coverage));
             };
-            add(mask.line[i], capsule.radius);
-            add(mask.halo[i], capsule.halo_radius);
+            const std::uint32_t coverage = coverage_within(capsule.radius, distance_px, capsule.strength);
+            add(mask.line[i], coverage);
+            add(mask.halo[i], coverage_within(capsule.halo_radius, distance_px));
             if (!is_tinted) continue;
-            const std::uint32_t coverage = coverage_within(capsule.radius, distance_px);
             mask.tints[i].add(capsule.tint, tint_weight(capsule, center_x, center_y, coverage));
         }
     }

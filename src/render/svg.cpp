@@ -65,7 +65,8 @@ class Svg : public VectorPage {
                             def.width_px, def.height_px, markup_text(printable(def.title)));
     }
 
-    void draw(const view::DrawList& list, int x_px, int y_px) override {
+    void draw(const view::DrawList& given, int x_px, int y_px) override {
+        const view::DrawList list = in_even_layers(given);
         // A nested svg element clips its contents.
         text_ += fmt::format(R"(<svg x="{}" y="{}" width="{}" height="{}">)", x_px, y_px, list.width,
                              list.height) +

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 
 namespace corda::render {
 namespace {
@@ -33,6 +35,29 @@ void append(std::vector<Stroke>& strokes, const view::Capsule& capsule, const St
 }
 
 }  // namespace
+
+view::DrawList in_even_layers(const view::DrawList& list) {
+    view::DrawList even = list;
+    even.layers.clear();
+    even.capsules.clear();
+    for (const view::Layer& layer : list.layers) {
+        const auto first = list.capsules.begin() + static_cast<std::ptrdiff_t>(layer.first_capsule);
+        const auto end = first + static_cast<std::ptrdiff_t>(layer.capsule_count);
+        const auto is_full = [](const view::Capsule& capsule) { return capsule.strength == 255.0F; };
+        const int steps = std::all_of(first, end, is_full) ? 1 : 12;
+        for (int step = 0; step < steps; ++step) {
+            const double part = layer.color.a / 255.0 / steps;
+            Color color = layer.color;
+            color.a = static_cast<std::uint8_t>(std::lround(255.0 * part / (1.0 - part * step)));
+            even.add_layer(color, layer.is_tinted);
+            std::copy_if(first, end, std::back_inserter(even.capsules), [&](const view::Capsule& capsule) {
+                return static_cast<double>(capsule.strength) * steps >= 255.0 * (step + 0.5);
+            });
+            even.layers.back().capsule_count = even.capsules.size() - even.layers.back().first_capsule;
+        }
+    }
+    return even;
+}
 
 LayerStrokes strokes_of(const view::DrawList& list, const view::Layer& layer) {
     LayerStrokes strokes;

@@ -24,6 +24,10 @@ struct LayerStrokes {
     std::vector<Stroke> lines;
 };
 
+/// `list` with each layer whose capsules differ in strength as layers of even alpha. Each holds only the
+/// capsules that are stronger than the layers below, so that no seam shows where capsules meet.
+[[nodiscard]] view::DrawList in_even_layers(const view::DrawList& list);
+
 /// Joins consecutive capsules of one width into lines; in a tinted layer, only those of one tint. A tinted
 /// layer has its lines first with round caps, which fill the outside of bends, then with blunt ones, so that
 /// collinear links meet at a sharp edge, and its dots last.

@@ -123,11 +123,11 @@ double expected_bytes(const BodySize& size, const SolverDef& solver, bool is_net
 }
 
 /// Estimated upper bound of the memory, in bytes, for the trail of a rope: a point per frame, at most 400 in
-/// a trail, and in a picture half of 12 layers of 4 capsules per point.
+/// a trail, and in a picture 4 capsules per point.
 double trail_bytes(const Scene& scene) {
     if (scene.style.trail_s == 0.0) return 0.0;
-    constexpr double kPerPoint = 2.0 * sizeof(Vec2);  // a vector that grows has as much again
-    constexpr double kPerPointInPicture = 2.0 * 26.0 * 32.0;
+    constexpr double kPerPoint = 2.0 * 40.0;  // a vector that grows has as much again
+    constexpr double kPerPointInPicture = 2.0 * 4.0 * 36.0;
     constexpr double kMaxPoints = 400.0;
     const double in_trail = scene.style.trail_s * scene.video.scene_rate().per_second();
     const double stride = std::max(1.0, in_trail / kMaxPoints);
@@ -135,7 +135,8 @@ double trail_bytes(const Scene& scene) {
     const double frames = std::min(scene.world.duration_s * scene.video.scene_rate().per_second(),
                                    static_cast<double>(Limits::kFrames));
     const double points = frames / stride;
-    return kPerPoint * points + kPerPointInPicture * std::min({in_trail, points, kMaxPoints});
+    const double trails = std::max(1.0, static_cast<double>(scene.style.trail_of.size()));
+    return trails * (kPerPoint * points + kPerPointInPicture * std::min({in_trail, points, kMaxPoints}));
 }
 
 /// Adds one body to the total size. Returns true if that is within the limits.
@@ -354,7 +355,7 @@ SceneSize count_bodies(const Sections& sections, const SolverSection& solver, co
         const SolverDef& method = solver.group_of(size.bodies.size()).def;
         size.bodies.push_back(own);
         size.has_bars = size.has_bars && own;
-        const double of_trail = is_net ? 0.0 : trail_bytes(scene);
+        const double of_trail = is_net && scene.style.trail_of.empty() ? 0.0 : trail_bytes(scene);
         if (size.fits && own)
             size.fits = add_size(body, *own, expected_bytes(*own, method, is_net) + of_trail, of_trail > 0.0,
                                  fewer_bars, all);

@@ -35,6 +35,19 @@ Binding body_color() {
     });
 }
 
+/// One width, or those of the first link and the last.
+Binding body_width() {
+    return custom_field<BodyStyleDef>(
+        [](const Value& value, BodyStyleDef& def) {
+            def.width_px = (value.is_list() ? value.at(0) : value).as<double>();
+            if (value.is_list()) def.end_width_px = value.at(1).as<double>();
+        },
+        [](const BodyStyleDef& def) -> std::string {
+            if (def.width_px && def.end_width_px) return toml_text(Vec2{*def.width_px, *def.end_width_px});
+            return def.width_px ? toml_text(*def.width_px) : "";
+        });
+}
+
 /// One value for all particles, or a list; `initial` if code has left it empty.
 template <class Def, class T>
 Binding all_of(std::vector<T> Def::*member, const T& initial) {
@@ -48,6 +61,7 @@ template <class Def>
 std::vector<Key> body_keys(std::string_view section, std::vector<Key> keys, std::string_view width) {
     const Type mass = or_list(number(kMass), "a list with one per particle");
     const Type velocity = or_list(pair("[vx, vy]", kAny), "a list with one such pair per particle");
+    constexpr bool is_net = std::is_same_v<Def, NetDef>;
     Type color = or_list(of(Kind::kColor), "a list with one per link, in turn");
     color.min_entries = 1;
     const std::vector<Key> common{
@@ -67,8 +81,8 @@ std::vector<Key> body_keys(std::string_view section, std::vector<Key> keys, std:
          "the strain per newton of tension, 1/(E A)", "at 0 all lengths are kept"},
         {section, "color", color, "", otherwise("the next of style.palette", body_color()), "the colour",
          "a list: of its links in turn, with style.color_by = \"link\""},
-        {section, "width_px", number(kWidthPx), "px", otherwise(width, field(&BodyStyleDef::width_px)),
-         "the width"},
+        {section, "width_px", is_net ? number(kWidthPx) : or_pair(number(kWidthPx), "[first, last]"), "px",
+         otherwise(width, body_width()), "the width", is_net ? "" : "a pair: of its first link and its last"},
         {section, "merged", of(Kind::kBoolean), "", field(&BodyStyleDef::merged),
          "drawn in one layer with the body before",
          "without a gap between them, in a gradient of colours; no outlines of balls"},

@@ -81,6 +81,8 @@ std::vector<Key> video_keys() {
 }
 
 std::vector<Key> style_keys() {
+    Type particles = list(Kind::kInteger, 1);
+    particles.range = {.low = -kMaxParticles, .high = kMaxParticles - 1};
     const Type boolean = of(Kind::kBoolean);
     const Type color = of(Kind::kColor);
     const auto of_theme = [](const Binding& binding) { return otherwise("the theme's", binding); };
@@ -96,6 +98,8 @@ std::vector<Key> style_keys() {
         {"style", "color_by", one_of({"body", "tension", "speed", "strain", "link"}), "",
          field(&StyleDef::color_by), "what colours tell",
          "tension, speed and strain of each link by one scale for the whole film; link: the list in color"},
+        {"style", "arrows", one_of({"none", "velocity", "tension", "weight"}), "", field(&StyleDef::arrows),
+         "arrows at particles", "one scale for the whole film; a rope or net of many particles has some"},
         {"style", "rope_width_px", number(kWidthPx), "px",
          otherwise("shorter side / 120, at least 2", field(&StyleDef::rope_width_px)), "the width of ropes"},
         {"style", "net_width_px", number(kWidthPx), "px",
@@ -107,7 +111,11 @@ std::vector<Key> style_keys() {
          "from rings if something rises above them"},
         {"style", "halo", boolean, "", field(&StyleDef::halo), "a gap parts crossing bodies"},
         {"style", "trail_s", number({.low = 0.0, .high = 3600.0}), "s", field(&StyleDef::trail_s),
-         "the time for which the path of the free end of a rope stays", "it fades; 0: not at all"},
+         "the time for which the path of a particle stays", "it fades; 0: not at all"},
+        {"style", "trail_of", particles, "",
+         otherwise("the free end of each rope", field(&StyleDef::trail_of)),
+         "the indices of the particles with a path, in each rope and net",
+         "negative ones count from the end"},
         {"style", "markers", one_of({"none", "pinned", "all"}), "", field(&StyleDef::markers),
          "the particles with a marker"},
         {"style", "marker_radius_px", number(kWidthPx), "px",
@@ -144,7 +152,7 @@ std::vector<Key> overlay_keys() {
         {"overlay", "scale_bar", boolean, "", if_large(&OverlayDef::scale_bar),
          "a scale bar, at the lower right"},
         {"overlay", "legend", boolean, "", if_large(&OverlayDef::legend),
-         "the scale of style.color_by, at the upper right"},
+         "the scales of style.color_by, at the upper right, and of style.arrows, at the lower right"},
         {"overlay", "title", of(Kind::kText), "", field(&OverlayDef::title), "the title, at the upper left",
          "in up to three lines; shortened if it is too long"},
         {"overlay", "energy", boolean, "", field(&OverlayDef::energy),

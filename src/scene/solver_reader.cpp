@@ -84,17 +84,24 @@ SolverSection read_solver(const Sections& sections, Scene& scene) {
     return section;
 }
 
-void check_color_by(const Sections& sections, const SolverSection& solver, const StyleDef& style) {
-    if (style.color_by != ColorBy::kTension) return;
-    for (const SolverGroup& group : solver.groups) {
-        const std::optional<MethodDef> method = method_in(group.def);
-        if (!method || sim::knows_tensions(*method)) continue;
-        sections.style.find("color_by")
-            ->add_problem(
-                fmt::format("method \"{}\" knows no tensions; give \"speed\" or \"strain\", or another "
-                            "solver.method",
-                            method_name(*method)));
-        return;
+void check_tensions(const Sections& sections, const SolverSection& solver, const StyleDef& style) {
+    struct Shown {
+        bool tensions;
+        const char* key;
+        const char* others;
+    };
+    for (const auto& [tensions, key, others] :
+         {Shown{style.color_by == ColorBy::kTension, "color_by", "\"speed\" or \"strain\""},
+          Shown{style.arrows == Arrows::kTension, "arrows", "\"velocity\" or \"weight\""}}) {
+        if (!tensions) continue;
+        for (const SolverGroup& group : solver.groups) {
+            const std::optional<MethodDef> method = method_in(group.def);
+            if (!method || sim::knows_tensions(*method)) continue;
+            sections.style.find(key)->add_problem(
+                fmt::format("method \"{}\" knows no tensions; give {}, or another solver.method",
+                            method_name(*method), others));
+            break;
+        }
     }
 }
 

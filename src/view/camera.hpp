@@ -5,6 +5,7 @@
 
 #include "corda/sim/system.hpp"
 #include "corda/view/defs.hpp"
+#include "corda/view/draw_list.hpp"
 
 namespace corda::view {
 
@@ -71,6 +72,10 @@ class Camera {
     }
     [[nodiscard]] double y_px(double y_m) const {
         return half_height_px_ - (y_m - center_.y) * pixels_per_metre_;
+    }
+    /// The place of a particle.
+    [[nodiscard]] PixelPoint at(const State& state, std::size_t particle) const {
+        return {x_px(state.x_m[particle]), y_px(state.y_m[particle])};
     }
     [[nodiscard]] double pixels_per_metre() const { return pixels_per_metre_; }
 

@@ -120,6 +120,10 @@ Color text_color(const Look& look) {
     return is_light ? Color{0x2a, 0x2f, 0x3a} : Color{0xd5, 0xdb, 0xe6};
 }
 
+Color arrow_color(const StyleDef& style) {
+    return is_light(style) ? Color{0xa8, 0x12, 0x6e} : Color{0x7a, 0xf0, 0xb4};
+}
+
 Color ColorScale::color(double value) const {
     if (std::isnan(value)) return unknown;
     const double place =

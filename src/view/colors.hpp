@@ -29,6 +29,9 @@ struct Look {
 /// A colour that can be read on the background; on a transparent background, the theme's.
 [[nodiscard]] Color text_color(const Look& look);
 
+/// A colour of arrows that stands out from the background.
+[[nodiscard]] Color arrow_color(const StyleDef& style);
+
 /// Colour scale of a quantity for all pictures of a film: linear from `low` to `high`.
 struct ColorScale {
     Quantity quantity = Quantity::kTension;

@@ -51,6 +51,10 @@ enum class ColorBy { kBody, kTension, kSpeed, kStrain, kLink };
     return std::nullopt;
 }
 
+/// The arrows at particles: their velocities, the pulls of their links, or their weights. One scale for the
+/// whole motion.
+enum class Arrows { kNone, kVelocity, kTension, kWeight };
+
 /// Style of a scene. Widths are in output pixels; their defaults grow with the shorter side. Fields that are
 /// not given come from the theme.
 struct StyleDef {
@@ -60,12 +64,16 @@ struct StyleDef {
     /// the theme's.
     std::vector<Color> palette;
     ColorBy color_by = ColorBy::kBody;
+    Arrows arrows = Arrows::kNone;
     std::optional<double> rope_width_px;  ///< 0.1 .. 1000; default: side / 120, at least 2
     std::optional<double> net_width_px;   ///< 0.1 .. 1000; default: half of a rope's, at least 2
     bool payload = true;   ///< draw payloads, and the masses of ropes of up to 3 links, as balls
     bool supports = true;  ///< draw plates at pinned particles, or rings if something rises above them
     bool halo = true;      ///< leave a gap around each body in the bodies behind it
-    double trail_s = 0.0;  ///< 0 .. 3600: how long the path of a rope's free end remains; 0: no trail
+    double trail_s = 0.0;  ///< 0 .. 3600: how long the path of a particle remains; 0: no trail
+    /// Particles of each rope and net, from its end if negative, whose paths are drawn; empty: the free end
+    /// of each rope.
+    std::vector<int> trail_of;
     Markers markers = Markers::kNone;
     /// 0.1 .. 1000; default: a little more than half the line's width
     std::optional<double> marker_radius_px;
@@ -82,7 +90,8 @@ struct BodyStyleDef {
     std::optional<Color> color;
     /// Colours of its links in turn, for ColorBy::kLink, with the alpha of the first; empty: `color`.
     std::vector<Color> link_colors;
-    std::optional<double> width_px;  ///< 0.1 .. 1000; default: rope_width_px, or net_width_px for a net
+    std::optional<double> width_px;      ///< 0.1 .. 1000; default: rope_width_px, or net_width_px for a net
+    std::optional<double> end_width_px;  ///< of a rope's last link, if width_px is of its first; 0.1 .. 1000
     /// Drawn in one layer with the body before it: without a halo between them, and in a gradient of the
     /// theme's colours along such a row, except bodies with a colour of their own.
     bool merged = false;
@@ -110,7 +119,7 @@ struct OverlayDef {
     /// The time; default: on an opaque ground, if the shorter side has at least 160 px.
     std::optional<bool> time;
     std::optional<bool> scale_bar;  ///< a length of 1, 2 or 5 times a power of 10; default: as `time`
-    std::optional<bool> legend;     ///< the scale of style.color_by; default: as `time`
+    std::optional<bool> legend;     ///< the scales of style.color_by and style.arrows; default: as `time`
     std::string title;              ///< UTF-8, of characters that DejaVu Sans has; empty: none
     bool energy = false;            ///< the error of the energy (Figures::energy_error)
     bool method = false;            ///< the methods, and the bound of the displayed error

@@ -114,10 +114,12 @@ void DrawList::add_layer(Color color, bool is_tinted) {
     layers.push_back({color, capsules.size(), 0, is_tinted});
 }
 
-void DrawList::add_capsule(PixelPoint a, PixelPoint b, double radius_px, double halo_px, Tint tint) {
+void DrawList::add_capsule(PixelPoint a, PixelPoint b, double radius_px, double halo_px, Tint tint,
+                           double opacity) {
     auto capsule = make_capsule(a, b, radius_px, width, height, halo_px);
     if (!capsule) return;
     capsule->tint = tint;
+    capsule->strength = static_cast<float>(255.0 * opacity);
     capsules.push_back(*capsule);
     ++layers.back().capsule_count;
 }

@@ -42,6 +42,7 @@ struct Capsule {
     float radius = 0;
     /// Within this distance of the segment the ground replaces the layers below; 0: no halo.
     float halo_radius = 0;
+    float strength = 255;  ///< 0 .. 255: coverage of a pixel that lies within
     Tint tint;
 };
 
@@ -97,8 +98,10 @@ struct DrawList {
     /// Adds an empty layer on top of the others.
     void add_layer(Color color, bool is_tinted = false);
     /// Adds the capsule around the segment from `a` to `b` to the last layer, if it can touch the frame. Its
-    /// halo extends `halo_px` beyond `radius_px`.
-    void add_capsule(PixelPoint a, PixelPoint b, double radius_px, double halo_px = 0.0, Tint tint = {});
+    /// halo extends `halo_px` beyond `radius_px`. `opacity`: 0 .. 1; where capsules of a layer overlap, the
+    /// most opaque one shows.
+    void add_capsule(PixelPoint a, PixelPoint b, double radius_px, double halo_px = 0.0, Tint tint = {},
+                     double opacity = 1.0);
     /// Adds a circle of that radius, drawn with a pen of `width_px`, as a polygon.
     void add_ring(PixelPoint center, double radius_px, double width_px);
     /// Adds the part of a filled rectangle that is in the frame on top of the other stamps.

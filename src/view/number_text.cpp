@@ -121,6 +121,12 @@ NumberTitle title_of(const std::string& name, const std::string& unit, double la
     return {fmt::format("{} ({}{}{})", name, factor, prefix, unit), power_of_10(exponent)};
 }
 
+std::string quantity_text(double value, const std::string& unit) {
+    const NumberTitle title = title_of("", unit, value);
+    const std::string words = title.text.substr(2, title.text.size() - 3);  // without " (" and ")"
+    return fmt::format("{} {}", display_number(value / title.unit), words);
+}
+
 NumberTitle title_of(const ColorScale& scale) {
     const sim::QuantityKind& kind = sim::kind_of(scale.quantity);
     return title_of(kind.name, kind.unit, scale.high);

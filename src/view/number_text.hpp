@@ -46,6 +46,9 @@ struct RoundNumber {
 /// "−0.25": at most `digits` digits, and a minus sign as wide as a plus.
 [[nodiscard]] std::string display_number(double value, int digits = 6);
 
+/// "20 mN": a number with its unit, which takes a prefix.
+[[nodiscard]] std::string quantity_text(double value, const std::string& unit);
+
 /// Title of numbers, such as "tension (kN)", and the divisor of their values for this unit.
 struct NumberTitle {
     std::string text;

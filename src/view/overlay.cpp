@@ -78,10 +78,26 @@ constexpr BottomText kBottomTexts[] = {
 }  // namespace
 
 void locate(std::span<const BodyLabel> labels, const State& state, const Camera& camera, Caption& caption) {
-    const auto at = [&](std::size_t i) {
-        return PixelPoint{camera.x_px(state.x_m[i]), camera.y_px(state.y_m[i])};
-    };
-    for (const BodyLabel& label : labels) caption.labels.emplace_back(at(label.particle), at(label.from));
+    for (const BodyLabel& label : labels)
+        caption.labels.emplace_back(camera.at(state, label.particle), camera.at(state, label.from));
+}
+
+std::vector<std::string> digits_of(std::span<const double> times_s) {
+    constexpr int kFewDigits = 3;
+    std::vector<std::string> all;
+    double steps_1_s = 1.0;  // of the last digit
+    for (int digits = 1; digits <= kMaxDecimals; ++digits) {
+        all.clear();
+        bool is_exact = true;
+        steps_1_s *= 10.0;
+        for (const double time_s : times_s) {
+            all.push_back(fmt::format("{:.{}f}", time_s, digits));
+            is_exact &= std::abs(std::round(time_s * steps_1_s) / steps_1_s - time_s) < 1e-9;
+        }
+        const bool are_apart = std::adjacent_find(all.begin(), all.end()) == all.end();
+        if (is_exact || (digits >= kFewDigits && are_apart)) break;
+    }
+    return all;
 }
 
 std::string time_label(const std::string& digits, Language language) {
@@ -90,6 +106,8 @@ std::string time_label(const std::string& digits, Language language) {
 
 Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int height, double interval_s)
     : def_(def),
+      arrows_(style.arrows),
+      arrow_color_(arrow_color(style)),
       side_px_(std::min(width, height)),
       em_px_(def.text_px ? rounded(*def.text_px) : em_of(width, height)),
       edge_px_(edge_of(side_px_, em_px_)) {
@@ -104,7 +122,9 @@ Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int he
     const bool by_default = side_px_ >= kMinSidePx && look.ground.is_opaque();
     time_ = def.time.value_or(by_default);
     scale_bar_ = def.scale_bar.value_or(by_default);
-    legend_ = quantity_of(style.color_by) && def.legend.value_or(by_default);
+    const bool has_legends = def.legend.value_or(by_default);
+    legend_ = quantity_of(style.color_by) && has_legends;
+    if (!has_legends) arrows_ = Arrows::kNone;
     color_ = text_color(look);
     title_lines_ = wrapped_title();
     while (decimals_ < kMaxDecimals && interval_s * power_of_10(decimals_) < 1.0) ++decimals_;
@@ -120,7 +140,7 @@ void Overlay::set_plots(std::span<const PlotData> data, std::span<const Color> b
 }
 
 bool Overlay::has_bottom() const {
-    return time_ || scale_bar_ ||
+    return time_ || scale_bar_ || arrows_ != Arrows::kNone ||
            std::any_of(std::begin(kBottomTexts), std::end(kBottomTexts),
                        [this](const BottomText& item) { return item.is_shown(def_); });
 }
@@ -210,18 +230,79 @@ void Overlay::set_labels(std::vector<BodyLabel> labels, std::span<const MotionBo
     }
 }
 
-void Overlay::draw_label(const BodyLabel& label, PixelPoint at, PixelPoint from, DrawList& list) {
+void Overlay::set_arrows(double pixels_per_unit, double largest) {
+    arrow_text_.clear();
+    if (arrows_ == Arrows::kNone || !std::isnormal(largest)) return;
+    const double value = round_number_below(largest).value();
+    arrow_text_ = localized(quantity_text(value, arrows_ == Arrows::kVelocity ? "m/s" : "N"), def_.language);
+    arrow_text_px_ = font_.width_px(arrow_text_, em_px_);
+    arrow_px_ = value * pixels_per_unit;
+    const int time_px = time_ ? font_.width_px(time_text(kTwoDigitsS), em_px_) + rounded(kLine * em_px_) : 0;
+    if (arrow_x_px() < edge_px_ + time_px) arrow_text_.clear();
+}
+
+int Overlay::arrow_x_px() const {
+    const int end_px = width_ - edge_px_;
+    return arrow_text_.empty() ? end_px
+                               : end_px - rounded(arrow_px_) - rounded(kGap * em_px_) - arrow_text_px_;
+}
+
+void Overlay::draw_curves(double time_s, DrawList& list) const {
+    for (const PlotPanel& plot : plots_) plot.draw_curves(time_s, list);
+    if (arrow_text_.empty()) return;
+    list.add_layer(arrow_color_);
+    list.layers.back().is_note = true;
+    const double end_px = width_ - edge_px_;
+    const double y_px = height_ - edge_px_ - 0.5 * kAscent * em_px_;
+    add_arrow({end_px - arrow_px_, y_px}, {end_px, y_px}, side_px_, false, list);
+}
+
+PixelRect Overlay::label_box(const BodyLabel& label, PixelPoint at, PixelPoint from, int turns,
+                             double clear_px) {
     PixelPoint along{at.x - from.x, at.y - from.y};
     const double length = sim::length(along.x, along.y);
     along = length > 0.0 ? PixelPoint{along.x / length, along.y / length} : PixelPoint{0.0, -1.0};
+    constexpr double kHalfRoot = 0.70710678118654752;
+    for (int i = 0; i < turns; ++i)
+        along = {kHalfRoot * (along.x - along.y), kHalfRoot * (along.x + along.y)};
     const int width_px = font_.width_px(label.text, em_px_);
-    const double clear_px = label.clear_px + kGap * em_px_;
     const double middle_px = at.x + along.x * (clear_px + 0.5 * width_px);
     const double baseline_px = at.y + along.y * clear_px + 0.5 * (1.0 + along.y) * kAscent * em_px_;
     // Beyond the frame, pixels may be more than an int holds.
-    if (!(std::abs(middle_px) < width_ + width_px && std::abs(baseline_px) < height_ + em_px_)) return;
-    font_.write({rounded(middle_px - 0.5 * width_px), rounded(baseline_px), em_px_, color_, label.text},
-                list);
+    if (!(std::abs(middle_px) < width_ + width_px && std::abs(baseline_px) < height_ + em_px_)) return {};
+    const int x_px = rounded(middle_px - 0.5 * width_px);
+    return {x_px, rounded(baseline_px) - rounded(kAscent * em_px_), x_px + width_px, rounded(baseline_px)};
+}
+
+void Overlay::draw_label(const BodyLabel& label, PixelPoint at, PixelPoint from, DrawList& list) {
+    const PixelRect box = label_box(label, at, from, 0, label.clear_px + kGap * em_px_);
+    if (!box.empty()) font_.write({box.x0, box.y1, em_px_, color_, label.text}, list);
+}
+
+void Overlay::draw_times(std::span<const PoseTime> poses, DrawList& list) {
+    if (!time_) return;
+    constexpr int kTurns[] = {0, 1, 7, 2, 6, 3, 5, 4};
+    constexpr double kFaintest = 0.6;
+    const int gap_px = rounded(kGap * em_px_);
+    std::vector<PixelRect> taken{{0, height_ - edge_px_ - em_px_, width_, height_}};
+    for (auto pose = poses.rbegin(); pose != poses.rend(); ++pose) {
+        const auto is_free = [&](const PixelRect& box) {
+            const PixelRect around{box.x0 - gap_px, box.y0 - gap_px, box.x1 + gap_px, box.y1 + gap_px};
+            return !box.empty() && around.intersected({0, 0, width_, height_}) == around &&
+                   std::all_of(taken.begin(), taken.end(),
+                               [&](const PixelRect& other) { return around.intersected(other).empty(); });
+        };
+        for (int i = 0; i < 16; ++i) {  // near, then farther away
+            const double clear_px = pose->label.clear_px + gap_px + (i < 8 ? 0.0 : kLine * em_px_);
+            const PixelRect box = label_box(pose->label, pose->at, pose->from, kTurns[i % 8], clear_px);
+            if (!is_free(box)) continue;
+            Color color = color_;
+            color.a = static_cast<std::uint8_t>(std::lround(255.0 * std::max(kFaintest, pose->opacity)));
+            font_.write({box.x0, box.y1, em_px_, color, pose->label.text}, list);
+            taken.push_back(box);
+            break;
+        }
+    }
 }
 
 std::string Overlay::time_text(double time_s) const {
@@ -234,9 +315,13 @@ void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& li
         draw_label(labels_[i], caption.labels[i].first, caption.labels[i].second, list);
     int left_px = edge_px_;
     int right_px = width_ - edge_px_;
+    if (!arrow_text_.empty()) {
+        font_.write({arrow_x_px(), height_ - edge_px_, em_px_, color_, arrow_text_}, list);
+        right_px = arrow_x_px() - rounded(kLine * em_px_);
+    }
     if (time_ && caption.time_s)
         left_px = write_bottom(time_text(*caption.time_s), left_px, right_px, list, time_text(kTwoDigitsS));
-    if (scale_bar_) right_px = draw_scale_bar(pixels_per_metre, left_px, list);
+    if (scale_bar_) right_px = draw_scale_bar(pixels_per_metre, left_px, right_px, list);
     for (const BottomText& item : kBottomTexts) {
         if (item.is_shown(def_) && caption.time_s)
             left_px =
@@ -277,8 +362,7 @@ int Overlay::write_bottom(const std::string& text, int x_px, int end_px, DrawLis
     return x_px + std::max(width_px, font_.width_px(widest, em_px_)) + rounded(kLine * em_px_);
 }
 
-int Overlay::draw_scale_bar(double pixels_per_metre, int begin_px, DrawList& list) {
-    const int right_px = width_ - edge_px_;
+int Overlay::draw_scale_bar(double pixels_per_metre, int begin_px, int right_px, DrawList& list) {
     const double longest_px = std::min(kBarPerWidth * width_, kBarLength * side_px_);
     const double longest_m = longest_px / pixels_per_metre;
     if (!std::isnormal(longest_m)) return right_px;

@@ -31,6 +31,14 @@ struct Caption {
 /// Adds the points of a state to a caption.
 void locate(std::span<const BodyLabel> labels, const State& state, const Camera& camera, Caption& caption);
 
+/// A pose among several in one picture.
+struct PoseTime {
+    BodyLabel label;
+    PixelPoint at;
+    PixelPoint from;
+    double opacity = 1.0;
+};
+
 /// Texts and scale bar at the edges of a picture, and the live plots. Time and energy are at the lower
 /// left, the scale bar at the lower right, title and method at the upper left, the legend at the upper right.
 /// A long title or method is shortened; other items without room are left out.
@@ -45,16 +53,19 @@ class Overlay {
     void set_scale(const ColorScale& scale) { scale_ = scale; }
     /// Sets the scale of the energies of captions, which decides on their unit.
     void set_energy_scale(double scale_j) { energy_scale_j_ = scale_j; }
+    /// Sets the scale of arrows and the size of the largest one.
+    void set_arrows(double pixels_per_unit, double largest);
     /// Sets the labels of bodies, and adds their extents for particles that stay within `motion`.
     void set_labels(std::vector<BodyLabel> labels, std::span<const MotionBounds> motion,
                     std::vector<Drawn>& drawn);
     [[nodiscard]] std::span<const BodyLabel> labels() const { return labels_; }
     /// Sets the data of the plots, of which those without room are left out; without data there are none.
     void set_plots(std::span<const PlotData> data, std::span<const Color> body_colors);
-    /// Adds the curves of the plots up to a time.
-    void draw_curves(double time_s, DrawList& list) const {
-        for (const PlotPanel& plot : plots_) plot.draw_curves(time_s, list);
-    }
+    /// Adds the curves of the plot up to a time, and the arrow of the legend.
+    void draw_curves(double time_s, DrawList& list) const;
+    /// Adds the times of poses, unless the time is switched off: those of later poses first, each where it
+    /// hides no other; one without such a place is left out.
+    void draw_times(std::span<const PoseTime> poses, DrawList& list);
     /// Adds the stamps of a picture with this camera scale.
     void draw(const Caption& caption, double pixels_per_metre, DrawList& list);
 
@@ -76,10 +87,15 @@ class Overlay {
     /// may begin, with room for the text `widest`.
     int write_bottom(const std::string& text, int x_px, int end_px, DrawList& list,
                      const std::string& widest = {});
-    /// The same for the scale bar, from the right; returns where it begins.
-    int draw_scale_bar(double pixels_per_metre, int begin_px, DrawList& list);
+    /// The same for the scale bar, to the left of `right_px`; returns where it begins.
+    int draw_scale_bar(double pixels_per_metre, int begin_px, int right_px, DrawList& list);
+    /// Left end of the legend of arrows, at the lower right; the right edge of texts without one.
+    [[nodiscard]] int arrow_x_px() const;
     /// Draws the legend; returns where it begins.
     int draw_legend(DrawList& list);
+    /// The box of a label in the direction of its line, turned by an eighth turn `turns` times.
+    [[nodiscard]] PixelRect label_box(const BodyLabel& label, PixelPoint at, PixelPoint from, int turns,
+                                      double clear_px);
     void draw_label(const BodyLabel& label, PixelPoint at, PixelPoint from, DrawList& list);
     void draw_gradient(const PixelRect& bar, DrawList& list) const;
     /// Size of the title: smaller, down to the size of the other texts, if it would not end before `end_px`.
@@ -97,6 +113,11 @@ class Overlay {
     double energy_scale_j_ = 0.0;
     std::vector<BodyLabel> labels_;
     Color color_;
+    Arrows arrows_;
+    Color arrow_color_;
+    std::string arrow_text_;  ///< "2 m/s"; empty: no legend
+    int arrow_text_px_ = 0;
+    double arrow_px_ = 0.0;
     Insets panel_;  ///< space taken by the plots
     int width_;     ///< width left by the plots
     int height_;
@@ -108,6 +129,10 @@ class Overlay {
     Font font_;
     std::vector<PlotPanel> plots_;
 };
+
+/// "0.25" for each time, all with the same number of digits: enough to be exact, or at least to be distinct
+/// if that takes many digits.
+[[nodiscard]] std::vector<std::string> digits_of(std::span<const double> times_s);
 
 /// "t = 1.20 s"
 [[nodiscard]] std::string time_label(const std::string& digits, Language language);

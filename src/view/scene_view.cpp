@@ -2,58 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "corda/view/draw_list.hpp"
 
 namespace corda::view {
 namespace {
-
-constexpr int kSteps = 12;           // of alpha
-constexpr double kYoungAlpha = 0.8;  // of the body's
-constexpr double kOldWidth = 0.4;    // of the young end's
-constexpr int kPieces = 4;           // between two points
-
-/// A curve through the points of a path as a finer one: cubics that have at each point the slope of the
-/// parabola through it and its neighbours.
-std::vector<FadingPoint> smooth(std::span<const FadingPoint> path) {
-    const auto chord = [&](std::size_t i) {  // from point i
-        const double step = path[i + 1].left - path[i].left;
-        return PixelPoint{(path[i + 1].at.x - path[i].at.x) / step, (path[i + 1].at.y - path[i].at.y) / step};
-    };
-    const auto slope = [&](std::size_t i) {
-        if (i == 0) return chord(i);
-        if (i + 1 == path.size()) return chord(i - 1);
-        const double share = (path[i].left - path[i - 1].left) / (path[i + 1].left - path[i - 1].left);
-        const PixelPoint a = chord(i - 1);
-        const PixelPoint b = chord(i);
-        return PixelPoint{a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
-    };
-    std::vector<FadingPoint> fine;
-    for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-        const FadingPoint& a = path[i];
-        const FadingPoint& b = path[i + 1];
-        const double step = b.left - a.left;
-        const PixelPoint va = slope(i);
-        const PixelPoint vb = slope(i + 1);
-        for (int k = 0; k < kPieces; ++k) {
-            const double t = 1.0 * k / kPieces;
-            const auto at = [&](double pa, double pb, double sa, double sb) {
-                const double u = 1.0 - t;
-                return u * u * (1.0 + 2.0 * t) * pa + t * t * (3.0 - 2.0 * t) * pb +
-                       step * t * u * (u * sa - t * sb);
-            };
-            fine.push_back(
-                {{at(a.at.x, b.at.x, va.x, vb.x), at(a.at.y, b.at.y, va.y, vb.y)}, a.left + t * step});
-        }
-    }
-    if (!path.empty()) fine.push_back(path.back());
-    return fine;
-}
-
-/// The alpha with which a layer is painted over one of alpha `below` to give `wanted`.
-double alpha_over(double below, double wanted) {
-    return (wanted - below) / (1.0 - below);
-}
 
 // Sizes as shares of the frame's shorter side.
 constexpr double kRopeWidth = 1.0 / 120.0;
@@ -78,9 +32,6 @@ constexpr std::uint8_t kBallWeight = 64;
 
 /// Beyond this number balls have no outlines, which take many capsules each.
 constexpr std::size_t kMaxOutlines = 1000;
-
-/// Ropes with at most this many links are drawn as pendulums, with balls for their masses.
-constexpr std::size_t kLinksOfPendulum = 3;
 
 /// The cube root of a number from 1 to 1000, by Newton's method: libraries differ in the last bit of cbrt.
 double cube_root(double value) {
@@ -117,23 +68,6 @@ std::vector<std::size_t> free_ends(const System& system) {
     return ends;
 }
 
-void add_trail(std::span<const FadingPoint> points, double radius_px, Color color, DrawList& list) {
-    const std::vector<FadingPoint> path = smooth(points);
-    const auto left = [&](std::size_t i) { return 0.5 * (path[i].left + path[i + 1].left); };
-    for (int step = 0; step < kSteps; ++step) {
-        const double young = kYoungAlpha * (color.a / 255.0);
-        Color layer = color;
-        layer.a = static_cast<std::uint8_t>(
-            std::lround(255.0 * alpha_over(young * step / kSteps, young * (step + 1) / kSteps)));
-        list.add_layer(layer);
-        for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-            if (left(i) * kSteps < step) continue;
-            list.add_capsule(path[i].at, path[i + 1].at,
-                             radius_px * (kOldWidth + (1.0 - kOldWidth) * left(i)));
-        }
-    }
-}
-
 SceneView::SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& style,
                      const std::vector<BodyStyleDef>& body_styles, int width, int height)
     : system_(&system),
@@ -143,7 +77,8 @@ SceneView::SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& st
       width_(width),
       height_(height),
       side_px_(std::min(width, height)),
-      rope_width_px_(style.rope_width_px.value_or(std::max(kMinLineWidthPx, kRopeWidth * side_px_))) {
+      rope_width_px_(style.rope_width_px.value_or(std::max(kMinLineWidthPx, kRopeWidth * side_px_))),
+      arrows_(system, gravity_m_s2, style, side_px_) {
     const double net_width_px =
         style.net_width_px.value_or(style.rope_width_px ? kNetWidthPerRopeWidth * rope_width_px_
                                                         : std::max(kMinLineWidthPx, kNetWidth * side_px_));
@@ -152,12 +87,18 @@ SceneView::SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& st
         const Body& body = system.bodies[i];
         const BodyStyleDef own = i < body_styles.size() ? body_styles[i] : BodyStyleDef{};
         const double width_px = own.width_px.value_or(body.is_net ? net_width_px : rope_width_px_);
+        const double end_width_px = own.width_px ? own.end_width_px.value_or(width_px) : width_px;
         const bool by_link = style.color_by == ColorBy::kLink && !own.link_colors.empty();
         Color color = by_link ? own.link_colors.front() : own.color.value_or(look_.support);
         if (!by_link && !own.color && !quantity_of(style.color_by))
             color = look_.palette[next_color++ % look_.palette.size()];
-        bodies_.push_back({color, by_link ? own.link_colors : std::vector<Color>{}, 0.5 * width_px,
-                           i > 0 && own.merged, balls_of(body, 0.5 * width_px)});
+        bodies_.push_back({color,
+                           by_link ? own.link_colors : std::vector<Color>{},
+                           0.5 * width_px,
+                           0.5 * end_width_px,
+                           i > 0 && own.merged,
+                           {}});
+        bodies_.back().balls = balls_of(i);
         ball_count_ += bodies_.back().balls.size();
     }
     if (style.color_by == ColorBy::kBody) color_merged(body_styles);
@@ -175,7 +116,16 @@ void SceneView::color_merged(const std::vector<BodyStyleDef>& body_styles) {
     }
 }
 
-std::vector<SceneView::Ball> SceneView::balls_of(const Body& body, double line_px) const {
+double SceneView::link_radius_px(std::size_t body, std::size_t link) const {
+    const BodyLook& look = bodies_[body];
+    const Body& of = system_->bodies[body];
+    const double share = static_cast<double>(link - of.first_bar) /
+                         static_cast<double>(std::max<std::size_t>(of.link_count, 2) - 1);
+    return look.radius_px + share * (look.end_radius_px - look.radius_px);
+}
+
+std::vector<SceneView::Ball> SceneView::balls_of(std::size_t b) const {
+    const Body& body = system_->bodies[b];
     std::vector<Ball> balls;
     if (!style_.payload || body.is_net) return balls;
     const std::size_t last = body.first_particle + body.particle_count - 1;
@@ -189,9 +139,21 @@ std::vector<SceneView::Ball> SceneView::balls_of(const Body& body, double line_p
         const double radius_px = ball_radius(mass_kg, rope_kg) * side_px_;
         const std::size_t link =
             body.first_bar + std::max(i, body.first_particle + 1) - body.first_particle - 1;
-        balls.push_back({i, link, std::max(radius_px, kBallPerLine * line_px)});
+        balls.push_back({i, link, std::max(radius_px, kBallPerLine * link_radius_px(b, link))});
     }
     return balls;
+}
+
+BodyLabel SceneView::label_at(std::size_t particle, std::string text) const {
+    std::size_t b = 0;
+    while (particle >= system_->bodies[b].first_particle + system_->bodies[b].particle_count) ++b;
+    double clear_px = std::max(bodies_[b].radius_px, bodies_[b].end_radius_px);
+    for (const Ball& ball : bodies_[b].balls)
+        if (ball.particle == particle) clear_px = ball.radius_px;
+    const std::vector<std::size_t> ends = free_ends(*system_);
+    const bool is_end = std::binary_search(ends.begin(), ends.end(), particle);
+    const std::size_t next = particle == system_->bodies[b].first_particle ? particle + 1 : particle - 1;
+    return {std::move(text), particle, is_end ? next : particle, clear_px};
 }
 
 BodyLabel SceneView::label_of(std::size_t b) const {
@@ -213,10 +175,7 @@ BodyLabel SceneView::label_of(std::size_t b) const {
     const bool has_free_end = free != ends.end() && *free < end;
     if (has_free_end &&
         (pin == end || std::any_of(system_->bodies.begin(), system_->bodies.end(), shares_pin))) {
-        double clear_px = bodies_[b].radius_px;
-        for (const Ball& ball : bodies_[b].balls)
-            if (ball.particle == *free) clear_px = ball.radius_px;
-        return {body.label, *free, *free == body.first_particle ? *free + 1 : *free - 1, clear_px};
+        return label_at(*free, body.label);
     }
     if (pin == end) return {body.label, body.first_particle, body.first_particle, bodies_[b].radius_px};
     std::vector<Drawn> supports;
@@ -241,7 +200,7 @@ std::vector<Color> SceneView::body_colors() const {
 
 bool SceneView::needs_motion() const {
     const auto& inverse = system_->inverse_mass_1_kg;
-    if (quantity_of(style_.color_by)) return true;
+    if (quantity_of(style_.color_by) || style_.arrows != Arrows::kNone) return true;
     return style_.supports && gravity_m_s2_ != Vec2{} &&
            std::find(inverse.begin(), inverse.end(), 0.0) != inverse.end();
 }
@@ -261,6 +220,7 @@ double SceneView::marker_radius_px(std::size_t body, bool pinned) const {
 std::vector<Drawn> SceneView::drawn(std::span<const MotionBounds> motion) const {
     std::vector<Drawn> all = drawn_bodies(motion);
     supports_.list(all);
+    arrows_.list(all);
     return all;
 }
 
@@ -271,7 +231,7 @@ std::vector<Drawn> SceneView::drawn_bodies(std::span<const MotionBounds> motion)
         MotionBounds bounds;
         for (std::size_t i = 0; i < body.particle_count; ++i) bounds.include(motion[body.first_particle + i]);
         if (body.material.is_string) include_slack(body, motion, bounds);
-        double radius_px = bodies_[b].radius_px;
+        double radius_px = std::max(bodies_[b].radius_px, bodies_[b].end_radius_px);
         if (style_.markers != Markers::kNone) radius_px = std::max(radius_px, marker_radius_px(b, true));
         all.push_back(around(bounds, radius_px));
         for (const Ball& ball : bodies_[b].balls)
@@ -301,22 +261,37 @@ void SceneView::include_slack(const Body& body, std::span<const MotionBounds> mo
 }
 
 std::vector<std::size_t> SceneView::traced() const {
-    return style_.trail_s == 0.0 ? std::vector<std::size_t>{} : free_ends(*system_);
+    if (style_.trail_s == 0.0) return {};
+    if (style_.trail_of.empty()) return free_ends(*system_);
+    std::vector<std::size_t> particles;
+    for (const Body& body : system_->bodies) {
+        const auto count = static_cast<std::int64_t>(body.particle_count);
+        for (const std::int64_t i : style_.trail_of) {
+            if (i >= -count && i < count)
+                particles.push_back(body.first_particle + static_cast<std::size_t>(i < 0 ? i + count : i));
+        }
+    }
+    return particles;
 }
 
 void SceneView::draw_trails(std::span<const Trail> trails, const Camera& camera, DrawList& list) const {
     if (trails.empty()) return;
-    const std::vector<std::size_t> ends = traced();
+    const std::vector<std::size_t> particles = traced();
+    const double slope_px = style_.trail_s * camera.pixels_per_metre();
     std::vector<FadingPoint> path;
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-        std::size_t body = 0;
-        while (ends[i] >= system_->bodies[body].first_particle + system_->bodies[body].particle_count) ++body;
+    std::size_t b = 0;
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        while (particles[i] >= system_->bodies[b].first_particle + system_->bodies[b].particle_count) ++b;
         path.clear();
-        for (const TrailPoint& point : trails[i])
-            path.push_back(
-                {{camera.x_px(point.at_m.x), camera.y_px(point.at_m.y)}, 1.0 - point.age_s / style_.trail_s});
-        add_trail(path, std::max(kMinTrailRadiusPx, kTrailPerLine * bodies_[body].radius_px),
-                  bodies_[body].color, list);
+        for (const auto& [age_s, at_m, velocity_m_s] : trails[i])
+            path.push_back({{camera.x_px(at_m.x), camera.y_px(at_m.y)},
+                            1.0 - age_s / style_.trail_s,
+                            {slope_px * velocity_m_s.x, -slope_px * velocity_m_s.y}});
+        const Body& body = system_->bodies[b];
+        const std::size_t number = std::max<std::size_t>(particles[i] - body.first_particle, 1);
+        const std::size_t link = body.first_bar + std::min(number, body.link_count) - 1;
+        add_trail(path, std::max(kMinTrailRadiusPx, kTrailPerLine * link_radius_px(b, link)),
+                  bodies_[b].color, list);
     }
 }
 
@@ -347,6 +322,7 @@ void SceneView::draw_pose(const State& state, const Camera& camera, DrawList& li
     }
     if (style_.bars != Bars::kNone) draw_bars(true, positions, list);
     if (style_.markers == Markers::kAll) draw_markers(false, positions, list);
+    arrows_.draw(state, camera, list);
 }
 
 void SceneView::draw_supports(const State& state, const Camera& camera, DrawList& list) const {
@@ -366,17 +342,18 @@ Tint SceneView::tint_of(std::size_t body, std::size_t link, const State& state) 
     return {color.r, color.g, color.b};
 }
 
-void SceneView::draw_links(std::size_t i, bool is_tinted, double halo_px, const Positions& positions,
+void SceneView::draw_links(std::size_t i, bool is_tinted, double halo_per_radius, const Positions& positions,
                            DrawList& list) const {
     const Body& body = system_->bodies[i];
-    const BodyLook& look = bodies_[i];
     for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k) {
         const Bar& link = system_->bars[k];
+        const double radius_px = link_radius_px(i, k);
+        const double halo_px = halo_per_radius * radius_px;
         const Tint tint = is_tinted ? tint_of(i, k, positions.state()) : Tint{};
         if (body.material.is_string && positions.distance_m(link) < link.rest_m)
-            draw_slack(link, look.radius_px, halo_px, tint, positions, list);
+            draw_slack(link, radius_px, halo_px, tint, positions, list);
         else
-            list.add_capsule(positions.px(link.a), positions.px(link.b), look.radius_px, halo_px, tint);
+            list.add_capsule(positions.px(link.a), positions.px(link.b), radius_px, halo_px, tint);
     }
 }
 
@@ -390,8 +367,9 @@ void SceneView::draw_bodies(std::size_t first, std::size_t end, const Positions&
     for (std::size_t i = first; i < end; ++i) {
         const BodyLook& look = bodies_[i];
         // Only the background is behind the first body.
-        const double halo_px = style_.halo && first > 0 ? kHaloPerWidth * 2.0 * look.radius_px : 0.0;
-        draw_links(i, is_tinted, halo_px, positions, list);
+        const double halo_per_radius = style_.halo && first > 0 ? kHaloPerWidth * 2.0 : 0.0;
+        draw_links(i, is_tinted, halo_per_radius, positions, list);
+        const double halo_px = halo_per_radius * look.radius_px;
         for (const Ball& ball : look.balls) {
             Tint tint = is_tinted ? tint_of(i, ball.link, positions.state()) : Tint{};
             if (is_one) tint.weight = kBallWeight;

@@ -9,6 +9,7 @@
 #include "corda/core/image.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/system.hpp"
+#include "corda/view/arrows.hpp"
 #include "corda/view/camera.hpp"
 #include "corda/view/colors.hpp"
 #include "corda/view/defs.hpp"
@@ -21,6 +22,7 @@ namespace corda::view {
 struct TrailPoint {
     double age_s = 0.0;
     Vec2 at_m;  ///< relative to the system's origin
+    Vec2 velocity_m_s;
 };
 
 /// The path of a particle in order of time, up to its place in the picture.
@@ -30,15 +32,16 @@ using Trail = std::vector<TrailPoint>;
 struct FadingPoint {
     PixelPoint at;
     double left = 0.0;
+    PixelPoint slope;  ///< change of `at` per unit of `left`
 };
+
+/// Adds the cubics through the points of a path, which must differ in age, with their slopes. The curve fades
+/// in alpha and width; where it crosses itself, the younger part shows. `radius_px` is the radius at the
+/// young end.
+void add_trail(std::span<const FadingPoint> points, double radius_px, Color color, DrawList& list);
 
 /// One free end per open rope that has one, preferably the last particle.
 [[nodiscard]] std::vector<std::size_t> free_ends(const System& system);
-
-/// Adds a smooth curve through the points of a path, which must differ in age. It fades in alpha and width.
-/// Each layer holds only the part that is younger than the layer below, so no seam shows where pieces meet or
-/// cross. `radius_px` is the radius at the young end.
-void add_trail(std::span<const FadingPoint> points, double radius_px, Color color, DrawList& list);
 
 /// The label of a body, next to one of its particles.
 struct BodyLabel {
@@ -52,7 +55,7 @@ struct BodyLabel {
 /// Turns states into draw lists. The content and its layers are chosen at construction, positions per frame.
 ///
 /// From back to front: trails; imaginary bars; each body, its links and then its balls; real bars, markers of
-/// free particles, supports, markers of pinned particles.
+/// free particles; arrows; supports, markers of pinned particles.
 class SceneView {
   public:
     /// `body_styles` has an entry per body of `system`; one that is missing overrides nothing. `system` must
@@ -66,6 +69,9 @@ class SceneView {
     void set_scale(const ColorScale& scale) { scale_ = scale; }
     /// That scale; std::nullopt if colours show no quantity.
     [[nodiscard]] const std::optional<ColorScale>& scale() const { return scale_; }
+    /// Sets the scale of arrows by their extents during the motion. There are none before the call.
+    void set_arrows(const ArrowExtents& extents) { arrows_.set_extents(extents); }
+    [[nodiscard]] const ArrowLayer& arrows() const { return arrows_; }
     /// Chooses the supports by the bounds of each particle. There are none before the call.
     void set_motion(std::span<const MotionBounds> motion);
     /// Extents of everything drawn for particles that stay within `motion`.
@@ -80,7 +86,10 @@ class SceneView {
     /// too, at its free end, or above its first particle. Final after set_motion().
     [[nodiscard]] std::vector<BodyLabel> labels() const;
 
-    /// The particles whose paths are drawn: free_ends(), or none without trails.
+    /// A label of a particle: beyond the end of a rope, otherwise above it.
+    [[nodiscard]] BodyLabel label_at(std::size_t particle, std::string text) const;
+
+    /// The particles whose paths are drawn, body by body; none without trails.
     [[nodiscard]] std::vector<std::size_t> traced() const;
 
     /// Writes the frame of `state` to `list`, with a trail for each of the particles traced(), or none.
@@ -108,7 +117,8 @@ class SceneView {
     struct BodyLook {
         Color color;
         std::vector<Color> link_colors;  ///< in turn; empty: `color`
-        double radius_px;                ///< of its links
+        double radius_px;                ///< of its first link
+        double end_radius_px;            ///< and of its last
         bool is_merged;                  ///< drawn in the layer of the body before
         std::vector<Ball> balls;
     };
@@ -132,7 +142,8 @@ class SceneView {
     };
 
     [[nodiscard]] BodyLabel label_of(std::size_t body) const;
-    [[nodiscard]] std::vector<Ball> balls_of(const Body& body, double line_px) const;
+    [[nodiscard]] double link_radius_px(std::size_t body, std::size_t link) const;
+    [[nodiscard]] std::vector<Ball> balls_of(std::size_t body) const;
     [[nodiscard]] double marker_radius_px(std::size_t body, bool pinned) const;
     /// Includes the positions that slack links of a string may reach.
     void include_slack(const Body& body, std::span<const MotionBounds> motion, MotionBounds& bounds) const;
@@ -141,7 +152,7 @@ class SceneView {
     void color_merged(const std::vector<BodyStyleDef>& body_styles);
     /// Draws the bodies first <= i < end in one layer.
     void draw_bodies(std::size_t first, std::size_t end, const Positions& positions, DrawList& list) const;
-    void draw_links(std::size_t i, bool is_tinted, double halo_px, const Positions& positions,
+    void draw_links(std::size_t i, bool is_tinted, double halo_per_radius, const Positions& positions,
                     DrawList& list) const;
     void draw_slack(const Bar& link, double radius_px, double halo_px, Tint tint, const Positions& positions,
                     DrawList& list) const;
@@ -160,6 +171,7 @@ class SceneView {
     std::size_t ball_count_ = 0;
     Supports supports_;
     std::optional<ColorScale> scale_;
+    ArrowLayer arrows_;
 };
 
 }  // namespace corda::view

@@ -384,7 +384,8 @@ INSTANTIATE_TEST_SUITE_P(
         Remedy{"tensions_of_dependent_bars",
                net_scene(kGrid, kByTension),
                "plan SCENE",
-               "set style.color_by = \"strain\" or \"speed\", or let the bars stretch by a compliance",
+               "set style.color_by = \"strain\" or \"speed\", style.arrows = \"velocity\", or let the bars "
+               "stretch by a compliance",
                {{{"\"tension\"", "\"speed\""}},
                 {{"\"tension\"", "\"strain\""}},
                 {{kGrid, kGrid + "compliance = 1e-4\n"}}}}),

@@ -24,6 +24,7 @@ inline void include(const State& state, std::vector<MotionBounds>& motion) {
 
 /// The live plots of a film.
 inline std::vector<view::PlotData> plotted_of(Film& film) {
+    if (film.scene().overlay.plots.empty()) return {};
     const pipeline::LivePlotData curves(film.scene(), film.system());
     std::vector<MethodDef> methods;
     for (const BodyPlan& body : film.plan().bodies) methods.push_back(body.method);
@@ -39,7 +40,8 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
                                    const view::Caption& caption = {},
                                    std::span<const view::Trail> trails = {},
                                    const sim::Histogram& histogram = {},
-                                   const std::vector<view::PlotData>& plots = {}) {
+                                   const std::vector<view::PlotData>& plots = {},
+                                   const view::ArrowExtents& arrows = {}) {
     const int width_px = scene.video.width_px;
     const int height_px = scene.video.height_px;
     view::SceneView scene_view(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, width_px,
@@ -51,6 +53,8 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
         scene_view.set_scale(view::scale_of(*quantity, histogram, scene.style));
         overlay.set_scale(view::scale_of(*quantity, histogram, scene.style));
     }
+    scene_view.set_arrows(arrows);
+    overlay.set_arrows(scene_view.arrows().pixels_per_unit(), arrows.largest());
     view::DrawList list;
     const view::Camera map(camera, system.origin_m, width_px, height_px);
     scene_view.draw(state, map, list, trails);
@@ -74,7 +78,9 @@ inline std::vector<std::size_t> traced(Film& film) {
 inline void add_points(Film& film, const State& state, double age_s, std::vector<view::Trail>& trails) {
     const std::vector<std::size_t> ends = traced(film);
     for (std::size_t i = 0; i < ends.size(); ++i)
-        trails[i].push_back({age_s, {state.x_m[ends[i]], state.y_m[ends[i]]}});
+        trails[i].push_back({age_s,
+                             {state.x_m[ends[i]], state.y_m[ends[i]]},
+                             {state.vx_m_s[ends[i]], state.vy_m_s[ends[i]]}});
 }
 
 /// Adds the quantity that a film's colours show to a state.
@@ -95,6 +101,12 @@ inline view::DrawList draw_list_of(Film& film, double time_s) {
         include(film.state(k), motion);
         add_values(film, film.state(k), histogram);
     }
+    view::ArrowExtents arrows;
+    const Scene& scene = film.scene();
+    const view::SceneView view(film.system(), scene.world.gravity_m_s2, scene.style, scene.body_styles,
+                               scene.video.width_px, scene.video.height_px);
+    for (std::int64_t k = 0; k <= film.last_frame(); ++k)
+        for (const view::Arrow& arrow : view.arrows().of(film.state(k))) arrows.include(arrow);
     std::vector<view::Trail> trails(test::traced(film).size());
     const double trail_s = film.scene().style.trail_s;
     for (std::int64_t k = 0; k <= film.last_frame() && !trails.empty(); ++k) {
@@ -109,7 +121,7 @@ inline view::DrawList draw_list_of(Film& film, double time_s) {
         method_caption(film.plan(), film.error_bound_px(), film.scene().overlay.language),
         {}};
     return draw_list_of(film.scene(), film.system(), film.camera_at(time_s), state, motion, caption, trails,
-                        histogram, plotted_of(film));
+                        histogram, plotted_of(film), arrows);
 }
 
 }  // namespace corda::test

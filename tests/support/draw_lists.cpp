@@ -45,7 +45,8 @@ view::DrawList random_draw_list(std::uint32_t seed, int width, int height, std::
             view::PixelPoint b{a.x + numbers.between(-reach, reach), a.y + numbers.between(-reach, reach)};
             if (i % 5 == 0) b = a;
             const double radius_px = 0.1 * std::pow(600.0, numbers.between(0.0, i % 3 == 0 ? 1.0 : 0.5));
-            list.add_capsule(a, b, radius_px, i % 4 == 0 ? 0.0 : numbers.between(0.0, 9.0));
+            const double halo_px = i % 4 == 0 ? 0.0 : numbers.between(0.0, 9.0);
+            list.add_capsule(a, b, radius_px, halo_px, {}, i % 9 == 0 ? numbers.between(0.0, 1.0) : 1.0);
             if (list.layers.back().is_tinted && list.layers.back().capsule_count > 0) {
                 list.capsules.back().tint = {numbers.byte(), numbers.byte(), numbers.byte(),
                                              static_cast<std::uint8_t>(i % 6 == 0 ? 64 : 1)};

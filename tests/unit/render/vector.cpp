@@ -75,6 +75,27 @@ TEST(Strokes, OfATintedLayerHaveBluntEndsOnTop) {
     EXPECT_EQ(strokes.halos.size(), 2U);  // of two widths, in one colour
 }
 
+TEST(EvenLayers, HaveTheAlphaOfFadedCapsules) {
+    view::DrawList list = list_of_one_layer();
+    list.layers.front().color.a = 200;
+    list.add_capsule({10.0, 10.0}, {20.0, 10.0}, 2.0, 0.0, {}, 0.25);
+    list.add_capsule({20.0, 10.0}, {30.0, 10.0}, 2.0);
+    list.add_layer({1, 2, 3});
+    list.add_capsule({10.0, 50.0}, {20.0, 50.0}, 2.0);
+    const view::DrawList even = in_even_layers(list);
+    double strong = 0.0;
+    double faint = 0.0;
+    for (std::size_t l = 0; l + 1 < even.layers.size(); ++l) {
+        const double alpha = even.layers[l].color.a / 255.0;
+        strong += (1.0 - strong) * alpha;
+        if (even.layers[l].capsule_count == 2) faint += (1.0 - faint) * alpha;
+    }
+    EXPECT_NEAR(strong, 200.0 / 255.0, 0.01);
+    EXPECT_NEAR(faint, 0.25 * 200.0 / 255.0, 1.0 / 12.0);
+    EXPECT_EQ(even.layers.back().color, (Color{1, 2, 3}));
+    EXPECT_EQ(even.capsules[even.layers.back().first_capsule].ay, 50.0F);
+}
+
 TEST(Boxes, ExtendBelowTheirOpaqueNeighbour) {
     view::DrawList list = list_of_one_layer();
     list.add_box({10, 10, 12, 20}, {1, 2, 3});

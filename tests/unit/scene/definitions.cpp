@@ -37,7 +37,7 @@ TEST(Definitions, OfAFileAreSound) {
 
 TEST(Definitions, AreRefusedByKeyValueAndRange) {
     EXPECT_EQ(message_of([](Scene& scene) { scene.style.trail_s = -0.5; }),
-              "style.trail_s: -0.5 is not >= 0; give the time for which the path of the free end of a rope "
+              "style.trail_s: -0.5 is not >= 0; give the time for which the path of a particle "
               "stays in s, 0 .. 3600");
     EXPECT_EQ(message_of([](Scene& scene) {
                   scene.camera.center_m = Vec2{0.0, kNone};

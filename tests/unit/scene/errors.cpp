@@ -469,6 +469,8 @@ TEST(SceneErrors, ColoursOfLinks) {
         {with("[style]\ncolor_by = \"tensoin\""),
          "swing.toml:4:12: style.color_by: ", "\"tensoin\" is unknown; did you mean \"tension\"?"},
         {with("[style]\ncolor_by = 3"), "swing.toml:4:12: style.color_by: ", "3 is an integer, not text"},
+        {with(relaxes + "[style]\narrows = \"tension\""),
+         "swing.toml:6:10: style.arrows: ", "knows no tensions; give \"velocity\" or \"weight\", or another"},
         {with(relaxes + "[style]\ncolor_by = \"tension\""),
          "swing.toml:6:12: style.color_by: ", "knows no tensions; give \"speed\" or \"strain\", or another"},
         {rope_with("color = [\"red\", \"blue\"]"),

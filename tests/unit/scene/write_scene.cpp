@@ -60,6 +60,20 @@ TEST(WriteScene, EveryKeyComesBack) {
     }
 }
 
+TEST(WriteScene, KeepsATaperAndTheParticlesOfTrails) {
+    const Scene scene =
+        parse_scene(scene::rope_with(
+                        "width_px = [9, 1.5]\n[style]\ntrail_s = 1\ntrail_of = [1, -1]\narrows = \"weight\""),
+                    "a");
+    EXPECT_EQ(scene.body_styles[0].width_px, 9.0);
+    EXPECT_EQ(scene.body_styles[0].end_width_px, 1.5);
+    EXPECT_EQ(scene.style.trail_of, (std::vector<int>{1, -1}));
+    EXPECT_EQ(scene.style.arrows, Arrows::kWeight);
+    const std::string toml = expect_round_trip(scene);
+    EXPECT_THAT(toml, testing::HasSubstr("width_px = [9, 1.5]"));
+    EXPECT_THAT(toml, testing::HasSubstr("trail_of = [1, -1]"));
+}
+
 TEST(WriteScene, KeepsPointsFarFromTheirOrigin) {
     // 100.1 + 0.1 and back is not 0.1: the offsets must stand in the file.
     const std::string toml =

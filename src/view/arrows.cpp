@@ -1,0 +1,145 @@
+#include "corda/view/arrows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "corda/view/colors.hpp"
+
+namespace corda::view {
+namespace {
+
+// Sizes as shares of the frame's shorter side.
+constexpr double kLongest = 0.22;
+constexpr double kLongestWeight = 0.12;  // they are parallel, so that long ones would cover each other
+constexpr double kShaft = 1.0 / 480.0;   // half of its width
+constexpr double kMinShaftPx = 0.75;
+
+// Sizes as shares of half of the shaft's width.
+constexpr double kHeadLength = 7.0;
+constexpr double kHeadWidth = 2.8;  // half of it
+constexpr double kHeadLine = 0.6;
+constexpr double kHalo = 0.8;
+
+constexpr std::size_t kMaxArrows = 60;
+constexpr std::size_t kMaxPerRope = 12;
+
+double shaft_px(double side_px) {
+    return std::max(kMinShaftPx, kShaft * side_px);
+}
+
+/// Free particles at even distances in their order, with the last one.
+std::vector<std::size_t> chosen(const System& system, const Body& body, std::size_t count) {
+    std::vector<std::size_t> free;
+    for (std::size_t i = body.first_particle + body.particle_count; i-- > body.first_particle;)
+        if (!system.is_pinned(i)) free.push_back(i);
+    const std::size_t stride = std::max<std::size_t>(1, (free.size() + count - 1) / count);
+    std::vector<std::size_t> some;
+    for (std::size_t k = 0; k < free.size(); k += stride) some.push_back(free[k]);
+    return some;
+}
+
+}  // namespace
+
+void ArrowExtents::include(const Arrow& arrow) {
+    largest_ = std::max(largest_, sim::length(arrow.value.x, arrow.value.y));
+    const double sides[] = {-arrow.value.x, arrow.value.x, arrow.value.y, -arrow.value.y};
+    for (std::size_t side = 0; side < starts_.size(); ++side) {
+        if (!(sides[side] > 0.0)) continue;
+        constexpr int kBits = 4;
+        int exponent = 0;
+        const double bits = std::ceil(std::ldexp(std::frexp(sides[side], &exponent), kBits));
+        starts_[side][std::ldexp(bits, exponent - kBits)].include(arrow.at_m.x, arrow.at_m.y);
+    }
+}
+
+void ArrowExtents::list(double pixels_per_unit, double head_px, std::vector<Drawn>& drawn) const {
+    constexpr double Drawn::*kSides[] = {&Drawn::left_px, &Drawn::right_px, &Drawn::up_px, &Drawn::down_px};
+    for (std::size_t side = 0; side < starts_.size(); ++side) {
+        for (const auto& [extent, starts] : starts_[side]) {
+            drawn.push_back({starts, head_px, head_px, head_px, head_px});
+            drawn.back().*kSides[side] += std::min(extent, largest_) * pixels_per_unit;
+        }
+    }
+}
+
+void add_arrow(PixelPoint from, PixelPoint to, double side_px, bool has_halo, DrawList& list) {
+    const double length_px = sim::length(to.x - from.x, to.y - from.y);
+    if (!(length_px >= 1.0)) return;
+    const PixelPoint along{(to.x - from.x) / length_px, (to.y - from.y) / length_px};
+    const double line_px = std::min(shaft_px(side_px), length_px / kHeadLength);
+    const auto at = [&](double back, double across) {  // from the tip
+        return PixelPoint{to.x - line_px * (back * along.x + across * along.y),
+                          to.y - line_px * (back * along.y - across * along.x)};
+    };
+    const double halo_px = has_halo ? kHalo * line_px : 0.0;
+    list.add_capsule(from, at(kHeadLength - 1.0, 0.0), line_px, halo_px);
+    for (const double share : {1.0, 0.6, 0.2}) {  // triangles, whose lines fill the head
+        const PixelPoint corners[] = {at(kHeadLine, 0.0), at(kHeadLength, share * kHeadWidth),
+                                      at(kHeadLength, -share * kHeadWidth)};
+        for (std::size_t i = 0; i < 3; ++i)
+            list.add_capsule(corners[i], corners[(i + 1) % 3], kHeadLine * line_px, halo_px);
+    }
+}
+
+ArrowLayer::ArrowLayer(const System& system, Vec2 gravity_m_s2, const StyleDef& style, double side_px)
+    : system_(&system),
+      gravity_m_s2_(gravity_m_s2),
+      kind_(style.arrows),
+      color_(arrow_color(style)),
+      side_px_(side_px) {
+    const std::size_t bodies = kind_ == Arrows::kNone ? 0 : system.bodies.size();
+    for (std::size_t b = 0; b < bodies; b += (bodies + kMaxArrows - 1) / kMaxArrows) {
+        const Body& body = system.bodies[b];
+        const std::size_t most = std::clamp<std::size_t>(kMaxArrows / bodies, 1, kMaxPerRope);
+        for (const std::size_t i : chosen(system, body, body.is_net ? 3 * most : most)) {
+            if (kind_ != Arrows::kTension) places_.push_back({i, 0});
+            const bool both = body.is_net || body.link_count <= kLinksOfPendulum;
+            for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k) {
+                const bool is_end = system.bars[k].b == i || (both && system.bars[k].a == i);
+                if (kind_ == Arrows::kTension && is_end) places_.push_back({i, k});
+            }
+        }
+    }
+}
+
+std::vector<Arrow> ArrowLayer::of(const State& state) const {
+    std::vector<Arrow> arrows;
+    for (const auto& [i, k] : places_) {
+        const Vec2 at_m{state.x_m[i], state.y_m[i]};
+        Vec2 value = system_->mass_kg[i] * gravity_m_s2_;
+        if (kind_ == Arrows::kVelocity) {
+            value = {state.vx_m_s[i], state.vy_m_s[i]};
+        } else if (kind_ == Arrows::kTension) {
+            const std::size_t other = system_->bars[k].a == i ? system_->bars[k].b : system_->bars[k].a;
+            const Vec2 way_m = Vec2{state.x_m[other], state.y_m[other]} - at_m;
+            value = state.tension_n[k] / sim::length(way_m.x, way_m.y) * way_m;
+        }
+        if (std::isfinite(value.x) && std::isfinite(value.y)) arrows.push_back({at_m, value});
+    }
+    return arrows;
+}
+
+void ArrowLayer::set_extents(const ArrowExtents& extents) {
+    extents_ = extents;
+    const double longest_px = (kind_ == Arrows::kWeight ? kLongestWeight : kLongest) * side_px_;
+    pixels_per_unit_ = extents.largest() > 0.0 ? longest_px / extents.largest() : 0.0;
+}
+
+void ArrowLayer::list(std::vector<Drawn>& drawn, const ArrowExtents* extents) const {
+    (extents == nullptr ? extents_ : *extents)
+        .list(pixels_per_unit_, (kHeadWidth + kHeadLine) * shaft_px(side_px_), drawn);
+}
+
+void ArrowLayer::draw(const State& state, const Camera& camera, DrawList& list) const {
+    if (pixels_per_unit_ == 0.0) return;
+    list.add_layer(color_);
+    list.layers.back().is_note = true;
+    for (const Arrow& arrow : of(state)) {
+        const PixelPoint from{camera.x_px(arrow.at_m.x), camera.y_px(arrow.at_m.y)};
+        add_arrow(from,
+                  {from.x + pixels_per_unit_ * arrow.value.x, from.y - pixels_per_unit_ * arrow.value.y},
+                  side_px_, true, list);
+    }
+}
+
+}  // namespace corda::view

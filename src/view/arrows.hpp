@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "corda/sim/system.hpp"
+#include "corda/view/camera.hpp"
+#include "corda/view/defs.hpp"
+#include "corda/view/draw_list.hpp"
+
+namespace corda::view {
+
+/// Ropes with at most this many links are drawn as pendulums: balls for their masses, tensions at both ends
+/// of links.
+inline constexpr std::size_t kLinksOfPendulum = 3;
+
+/// The fields of a state from which arrows are computed.
+[[nodiscard]] inline StateFields fields_of(Arrows arrows) {
+    return {.velocities = arrows == Arrows::kVelocity, .tensions = arrows == Arrows::kTension};
+}
+
+/// An arrow that starts at a particle.
+struct Arrow {
+    Vec2 at_m;   ///< relative to the system's origin
+    Vec2 value;  ///< y up, in m/s or N
+};
+
+/// Extent of arrows during a motion.
+class ArrowExtents {
+  public:
+    void include(const Arrow& arrow);
+    /// Size of the largest arrow; 0 without arrows.
+    [[nodiscard]] double largest() const { return largest_; }
+    /// Adds the extents of arrows with this scale, and of their heads, to a list.
+    void list(double pixels_per_unit, double head_px, std::vector<Drawn>& drawn) const;
+
+  private:
+    double largest_ = 0.0;
+    /// Where arrows to the left, right, top, bottom start, by their extent, rounded up to 4 bits.
+    std::array<std::map<double, MotionBounds>, 4> starts_;
+};
+
+/// Adds an arrow with a filled head to the last layer; a short one has a small head. `side_px`: the shorter
+/// side of the frame.
+void add_arrow(PixelPoint from, PixelPoint to, double side_px, bool has_halo, DrawList& list);
+
+/// The arrows of a scene, with one scale for all pictures. Of many particles, or many bodies, only some have
+/// them.
+class ArrowLayer {
+  public:
+    /// `system` must outlive this.
+    ArrowLayer(const System& system, Vec2 gravity_m_s2, const StyleDef& style, double side_px);
+
+    /// The arrows of a state, which must have fields_of() them.
+    [[nodiscard]] std::vector<Arrow> of(const State& state) const;
+    /// Sets the scale by the extents during the motion. Nothing is drawn before the call.
+    void set_extents(const ArrowExtents& extents);
+    /// Adds the extents of all arrows, as a camera that moves sees them if `extents` are given, to a list.
+    void list(std::vector<Drawn>& drawn, const ArrowExtents* extents = nullptr) const;
+    void draw(const State& state, const Camera& camera, DrawList& list) const;
+    [[nodiscard]] double pixels_per_unit() const { return pixels_per_unit_; }
+
+  private:
+    /// A free particle. Tension pulls it along `bar`.
+    struct Place {
+        std::size_t particle;
+        std::size_t bar;
+    };
+
+    const System* system_;
+    Vec2 gravity_m_s2_;
+    Arrows kind_;
+    Color color_;
+    double side_px_;
+    std::vector<Place> places_;
+    ArrowExtents extents_;
+    double pixels_per_unit_ = 0.0;
+};
+
+}  // namespace corda::view
