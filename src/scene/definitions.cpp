@@ -52,6 +52,25 @@ std::vector<DefProblem> problems_of(const OverlayDef& overlay, const std::vector
     return problems;
 }
 
+std::vector<DefProblem> problems_of(const StyleDef& style, const std::vector<RopeDef>& ropes,
+                                    const std::vector<NetDef>& nets) {
+    std::size_t most = 0;
+    for (const RopeDef& rope : ropes) most = std::max(most, rope.points_m.size());
+    for (const NetDef& net : nets) most = std::max(most, net.points_m.size());
+    const auto count = static_cast<std::int64_t>(most);
+    std::vector<DefProblem> problems;
+    for (std::size_t i = 0; i < style.trail_of.size(); ++i) {
+        const std::int64_t particle = style.trail_of[i];
+        if (particle < -count || particle >= count)
+            problems.push_back(
+                {"trail_of", i,
+                 fmt::format("{} is out of range; the particles of the longest rope or net are "
+                             "0 .. {}, or -1 .. -{} from its end",
+                             particle, count - 1, count)});
+    }
+    return problems;
+}
+
 std::vector<DefProblem> problems_of(const CameraDef& camera, std::size_t bodies) {
     if (camera.follow && !camera.path.empty())
         return {

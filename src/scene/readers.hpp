@@ -100,6 +100,9 @@ struct DefProblem {
 /// Plots of what the ropes do not have.
 [[nodiscard]] std::vector<DefProblem> problems_of(const OverlayDef& overlay,
                                                   const std::vector<RopeDef>& ropes);
+/// Trails of particles that no rope or net has.
+[[nodiscard]] std::vector<DefProblem> problems_of(const StyleDef& style, const std::vector<RopeDef>& ropes,
+                                                  const std::vector<NetDef>& nets);
 /// `bodies`: number of ropes and nets.
 [[nodiscard]] std::vector<DefProblem> problems_of(const CameraDef& camera, std::size_t bodies);
 /// Golden times that do not increase, and pictures that are too large.

@@ -104,6 +104,7 @@ Scene parse_scene(std::string_view toml, const std::string& source_name, const s
     problems.throw_if_any();
     check_cancelled();
     check_section(sections.overlay, scene.overlay, scene.ropes);
+    check_section(sections.style, scene.style, scene.ropes, scene.nets);
     check_motion(sections, scene);
     problems.throw_if_any();
     return scene;

@@ -380,6 +380,7 @@ void check_definitions(const Scene& scene) {
     for (std::size_t i = 0; i < scene.overlay.texts.size(); ++i)
         check_all(fmt::format("overlay.texts[{}]", i), scene.overlay.texts[i]);
     check_all("overlay", scene.overlay, scene.ropes);
+    check_all("style", scene.style, scene.ropes, scene.nets);
     check_all("camera", scene.camera, scene.ropes.size() + scene.nets.size());
     if (scene.golden) {
         check(table_of("golden", "golden", {part(*scene.golden)}));
