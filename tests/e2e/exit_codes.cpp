@@ -49,8 +49,8 @@ TEST_F(ExitCodes, HelpPrintsThemAll) {
     const auto result = run_corda({"--help"});
     for (const char* row :
          {"0  success", "2  usage", "3  invalid scene", "4  no usable OpenGL", "5  codec", "6  input/output",
-          "7  compare, golden, verify or sweep --check", "8  the simulation diverged", "75  out of memory",
-          "130  interrupted", "143  terminated"}) {
+          "7  compare, golden, verify, join or sweep --check", "8  the simulation diverged",
+          "75  out of memory", "130  interrupted", "143  terminated"}) {
         EXPECT_THAT(result.out, HasSubstr(row));
     }
 }

@@ -34,6 +34,14 @@ std::uint64_t hash_motion(const Scene& scene) {
 }
 
 const std::map<std::string, std::uint64_t> kHashes{
+    {"arrows as it is", 0x57a99d2710db07ecU},
+    {"arrows by auto", 0x57a99d2710db07ecU},
+    {"arrows by exact", 0x29e76fa846334d75U},
+    {"arrows by rattle", 0x325bc3077361c40U},
+    {"arrows_paper as it is", 0xd6adddd37524f7afU},
+    {"arrows_paper by auto", 0xd6adddd37524f7afU},
+    {"arrows_paper by exact", 0x58cb9687226960a0U},
+    {"arrows_paper by rattle", 0x4914df69e161ebfeU},
     {"bars as it is", 0x97ed1722ee4cadbdU},
     {"bars by auto", 0x4bfac20ec77af926U},
     {"bars by exact", 0xf72b0842ee91b200U},

@@ -372,7 +372,7 @@ TEST_F(Video, ChunksOfAnotherKindAreRefusedNamingWhatTheyHold) {
     const test::Failure failure =
         test::failure_of([&] { static_cast<void>(recover(parts_path(file("a.mp4")), file("a.webm"))); });
     EXPECT_EQ(failure.code, ExitCode::kUsage);
-    EXPECT_THAT(failure.message, testing::HasSubstr("hold h264"));
+    EXPECT_THAT(failure.message, testing::HasSubstr("cannot be made of h264"));
 }
 
 TEST_F(Video, AGifHasNoColourToCompareWhereItIsTransparent) {
