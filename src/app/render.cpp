@@ -104,7 +104,8 @@ int columns_of(const Console& console, const RenderOptions& options) {
     const bool is_read =
         options.panels.empty() || (std::sscanf(options.panels.c_str(), "%4dx%4d", &columns, &rows) == 2 &&
                                    fmt::format("{}x{}", columns, rows) == options.panels);
-    if (is_read && columns > 0 && rows > 0 && static_cast<std::size_t>(columns * rows) == scenes)
+    if (is_read && columns > 0 && rows > 0 &&
+        static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) == scenes)
         return columns;
     throw Error(ExitCode::kUsage,
                 fmt::format("--panels {}: is no grid COLUMNSxROWS of {}; give e.g. --panels {}x1",

@@ -61,7 +61,7 @@ template <class Def>
 std::vector<Key> body_keys(std::string_view section, std::vector<Key> keys, std::string_view width) {
     const Type mass = or_list(number(kMass), "a list with one per particle");
     const Type velocity = or_list(pair("[vx, vy]", kAny), "a list with one such pair per particle");
-    constexpr bool is_net = std::is_same_v<Def, NetDef>;
+    constexpr bool kIsNet = std::is_same_v<Def, NetDef>;
     Type color = or_list(of(Kind::kColor), "a list with one per link, in turn");
     color.min_entries = 1;
     const std::vector<Key> common{
@@ -81,8 +81,8 @@ std::vector<Key> body_keys(std::string_view section, std::vector<Key> keys, std:
          "the strain per newton of tension, 1/(E A)", "at 0 all lengths are kept"},
         {section, "color", color, "", otherwise("the next of style.palette", body_color()), "the colour",
          "a list: of its links in turn, with style.color_by = \"link\""},
-        {section, "width_px", is_net ? number(kWidthPx) : or_pair(number(kWidthPx), "[first, last]"), "px",
-         otherwise(width, body_width()), "the width", is_net ? "" : "a pair: of its first link and its last"},
+        {section, "width_px", kIsNet ? number(kWidthPx) : or_pair(number(kWidthPx), "[first, last]"), "px",
+         otherwise(width, body_width()), "the width", kIsNet ? "" : "a pair: of its first link and its last"},
         {section, "merged", of(Kind::kBoolean), "", field(&BodyStyleDef::merged),
          "drawn in one layer with the body before",
          "without a gap between them, in a gradient of colours; no outlines of balls"},

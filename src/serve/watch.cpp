@@ -33,7 +33,7 @@ constexpr int kMinSidePx = 160;
 
 /// The lines of an error with their places in the file, as the page shows them.
 Json problems_of(const std::string& message, const std::string& name) {
-    static const std::regex kPlace("([0-9]+):([0-9]+): *");
+    static const std::regex place_in_file("([0-9]+):([0-9]+): *");
     Json problems = Json::array();
     std::istringstream lines(message);
     for (std::string line; std::getline(lines, line);) {
@@ -41,7 +41,7 @@ Json problems_of(const std::string& message, const std::string& name) {
         std::smatch place;
         if (line.starts_with(name + ":")) {
             line.erase(0, name.size() + 1);
-            if (std::regex_search(line, place, kPlace, std::regex_constants::match_continuous))
+            if (std::regex_search(line, place, place_in_file, std::regex_constants::match_continuous))
                 problem = {{"line", std::stoul(place[1])}, {"column", std::stoul(place[2])}};
         }
         const std::size_t begin = place.empty() ? 0 : static_cast<std::size_t>(place.length());
@@ -462,8 +462,8 @@ Response Watch::write_file() {
                 changes_.erase(now);
             for (SceneNumber& number : numbers_)
                 if (number.key == key) number.value = value;
-            std::erase_if(def_.settings,
-                          [&](const Setting& setting) { return setting.starts_with(key + "="); });
+            const std::string start = key + "=";
+            std::erase_if(def_.settings, [&](const Setting& setting) { return setting.starts_with(start); });
         }
     }
     reload();
