@@ -56,6 +56,14 @@ char32_t take_character(std::string_view& rest) {
     return is_whole ? character : kNone;
 }
 
+/// Where the character that begins at byte `i` of a UTF-8 text ends.
+std::size_t end_of_character(std::string_view utf8, std::size_t i) {
+    constexpr unsigned kFollowing = 2;  // the first two bits of a continuation byte
+    do ++i;
+    while (i < utf8.size() && static_cast<unsigned char>(utf8[i]) >> 6U == kFollowing);
+    return i;
+}
+
 void check_font(FT_Error error) {
     if (error != 0)
         throw Error(ExitCode::kInternal, "FreeType: a glyph cannot be drawn: error " + std::to_string(error));
@@ -212,6 +220,24 @@ std::vector<FontRun> Font::runs_of(std::string_view utf8) const {
 
 int Font::width_px(std::string_view utf8, int size_px) {
     return impl_->for_each_glyph(utf8, 0, 0, size_px, [](const Impl::Glyph&, const PixelRect&) {});
+}
+
+std::string Font::shortened(std::string text, int size_px, int room_px, std::string_view separator) {
+    if (width_px(text, size_px) <= room_px) return text;
+    const std::string mark = "…";
+    int end = width_px(mark, size_px);
+    std::size_t kept = 0;
+    for (std::size_t next = 0; next < text.size(); kept = next) {
+        next = end_of_character(text, next);
+        end += width_px(std::string_view(text).substr(kept, next - kept), size_px);
+        if (end > room_px) break;
+    }
+    const std::size_t last = text.rfind(separator, kept);
+    constexpr double kMinUsed = 0.75;
+    const bool is_long_word =
+        separator == " " && width_px(text.substr(0, last), size_px) < kMinUsed * room_px;
+    if (last != std::string::npos && last > 0 && !is_long_word) kept = last;
+    return kept == 0 ? "" : text.substr(0, kept) + mark;
 }
 
 PixelRect Font::ink(const Text& text) {

@@ -70,6 +70,10 @@ class Font {
     [[nodiscard]] std::vector<FontRun> runs_of(std::string_view utf8) const;
     /// Advance width of a text, in pixels.
     [[nodiscard]] int width_px(std::string_view utf8, int size_px);
+    /// The text, or its beginning and an ellipsis if it is wider than `room_px`; empty without room. It ends
+    /// at a separator if it has one; at a space only if no quarter of the room stays empty.
+    [[nodiscard]] std::string shortened(std::string text, int size_px, int room_px,
+                                        std::string_view separator = " ");
     /// Bounding box of the pixels that write() would paint in an unlimited frame; may be empty.
     [[nodiscard]] PixelRect ink(const Text& text);
     /// Adds a text on top of the other stamps, cut off at the edges of the frame.

@@ -26,7 +26,12 @@ constexpr double kTitleLine = 1.3;  // of the title's
 constexpr double kTick = 0.4;       // at the ends of the scale bar
 constexpr double kLegendHeight = 0.6;
 constexpr double kLegendTick = 0.2;
+constexpr double kMethodRoom = 20.0;  // next to the legend
 constexpr int kGradientStepPx = 2;
+
+/// Least share of the picture's width next to a legend in which a title is wrapped.
+constexpr double kMinBeside = 0.5;
+constexpr std::size_t kMaxTitleLines = 3;
 
 /// Smallest shorter side of a frame that has overlays by default.
 constexpr int kMinSidePx = 160;
@@ -36,14 +41,6 @@ constexpr int kMaxDecimals = 9;
 
 /// Texts to the right of the time leave room for this one, so that they keep their places until 100 s.
 constexpr double kTwoDigitsS = 10.0;
-
-/// Where the character that begins at byte `i` of a UTF-8 text ends.
-std::size_t end_of_character(std::string_view utf8, std::size_t i) {
-    constexpr unsigned kFollowing = 2;  // the first two bits of a continuation byte
-    do ++i;
-    while (i < utf8.size() && static_cast<unsigned char>(utf8[i]) >> 6U == kFollowing);
-    return i;
-}
 
 /// "kinetic 1.25 J, potential −0.75 J", with a unit and decimals that depend on the scale alone.
 std::string energy_text(const Energy& energy, double scale_j, Language language) {
@@ -126,7 +123,7 @@ Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int he
     legend_ = quantity_of(style.color_by) && has_legends;
     if (!has_legends) arrows_ = Arrows::kNone;
     color_ = text_color(look);
-    title_lines_ = wrapped_title();
+    lay_out_top();
     while (decimals_ < kMaxDecimals && interval_s * power_of_10(decimals_) < 1.0) ++decimals_;
 }
 
@@ -155,31 +152,58 @@ int Overlay::title_line_px() const {
 
 int Overlay::title_baseline_px() const {
     const auto more = static_cast<int>(title_lines_.size()) - 1;
-    return edge_px_ + rounded(kAscent * title_px()) + more * title_line_px();
+    return title_top_px_ + rounded(kAscent * title_px()) + more * title_line_px();
 }
 
-std::vector<std::string> Overlay::wrapped_title() {
-    constexpr std::size_t kMaxLines = 3;
-    const int room_px = width_ - 2 * edge_px_ - (legend_ ? width_ / 2 : 0);
-    const auto fits = [&](const std::string& text, int size_px) {
-        return font_.width_px(text, size_px) <= room_px;
+int Overlay::room_px(int top_px) const {
+    const bool is_below = top_px >= legend_baseline_px() + rounded(kDescent * em_px_);
+    return (is_below ? width_ - edge_px_ : legend_x_px_) - edge_px_;
+}
+
+bool Overlay::wrap_title() {
+    const auto fits = [&](const std::string& text) {
+        return font_.width_px(text, title_px()) <= title_lines_.back().room_px;
     };
-    std::vector<std::string> lines{def_.title};
-    // A tiny frame is for the picture.
-    if (side_px_ < kMinSidePx || fits(def_.title, em_px_)) return lines;
-    while (lines.size() < kMaxLines && !fits(lines.back(), title_px())) {
-        const std::string rest = lines.back();
+    title_lines_ = {{def_.title, room_px(title_top_px_)}};
+    while (!fits(title_lines_.back().text)) {
+        const std::string rest = title_lines_.back().text;
         std::size_t end = std::string::npos;
         for (std::size_t space = rest.find(' '); space != std::string::npos;
              space = rest.find(' ', space + 1)) {
-            if (!fits(rest.substr(0, space), title_px())) break;
+            if (!fits(rest.substr(0, space))) break;
             end = space;
         }
-        if (end == std::string::npos) break;
-        lines.back() = rest.substr(0, end);
-        lines.push_back(rest.substr(end + 1));
+        if (end == std::string::npos || title_lines_.size() == kMaxTitleLines) return false;
+        title_lines_.back().text = rest.substr(0, end);
+        const auto line = static_cast<int>(title_lines_.size());
+        title_lines_.push_back({rest.substr(end + 1), room_px(title_top_px_ + line * title_line_px())});
     }
-    return lines;
+    return true;
+}
+
+void Overlay::lay_out_top() {
+    const int all_px = width_ - 2 * edge_px_;
+    legend_x_px_ = width_ - edge_px_;
+    if (legend_ && scale_) {
+        const Legend legend = lay_out_legend();
+        if (legend.x_px >= edge_px_) legend_x_px_ = legend.x_px - rounded(kLine * em_px_);
+    }
+    const int beside_px = legend_x_px_ - edge_px_;
+    const int below_px = legend_baseline_px() + rounded((kDescent + kGap) * em_px_);
+    title_top_px_ = edge_px_;
+    title_lines_ = {{def_.title, beside_px}};
+    const auto is_one_line = [&] { return font_.width_px(def_.title, em_px_) <= title_lines_[0].room_px; };
+    // A tiny frame is for the picture.
+    if (side_px_ >= kMinSidePx && !is_one_line() && (beside_px < kMinBeside * all_px || !wrap_title())) {
+        if (beside_px < all_px) title_top_px_ = below_px;
+        title_lines_ = {{def_.title, all_px}};
+        if (!is_one_line()) static_cast<void>(wrap_title());
+    }
+    method_baseline_px_ =
+        (def_.title.empty() ? edge_px_ : title_baseline_px() + rounded((kLine - kAscent) * em_px_)) +
+        rounded(kAscent * em_px_);
+    if (beside_px < all_px && beside_px < kMethodRoom * em_px_)
+        method_baseline_px_ = std::max(method_baseline_px_, below_px + rounded(kAscent * em_px_));
 }
 
 void Overlay::draw_text(const OverlayTextDef& text, DrawList& list) {
@@ -190,11 +214,6 @@ void Overlay::draw_text(const OverlayTextDef& text, DrawList& list) {
                 list);
 }
 
-int Overlay::method_baseline_px() const {
-    return def_.title.empty() ? edge_px_ + rounded(kAscent * em_px_)
-                              : title_baseline_px() + rounded(kLine * em_px_);
-}
-
 int Overlay::legend_baseline_px() const {
     return edge_px_ + rounded((2.0 * kAscent + kLegendTick + kGap) * em_px_);
 }
@@ -202,7 +221,7 @@ int Overlay::legend_baseline_px() const {
 Insets Overlay::insets() const {
     Insets insets = panel_;
     if (def_.method)
-        insets.top_px = method_baseline_px() + (kDescent + kGap) * em_px_;
+        insets.top_px = method_baseline_px_ + (kDescent + kGap) * em_px_;
     else if (!def_.title.empty())
         insets.top_px = title_baseline_px() + (kDescent + kGap) * title_px();
     if (legend_) insets.top_px = std::max(insets.top_px, legend_baseline_px() + (kDescent + kGap) * em_px_);
@@ -327,12 +346,12 @@ void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& li
             left_px =
                 write_bottom(item.text(caption, energy_scale_j_, def_.language), left_px, right_px, list);
     }
-    const int end_px = legend_ && scale_ ? draw_legend(list) : width_ - edge_px_;
-    const int title_size_px = title_lines_.size() == 1 ? fitting_title_px(end_px) : title_px();
+    if (legend_ && scale_) draw_legend(list);
+    const int title_size_px = title_lines_.size() == 1 ? fitting_title_px() : title_px();
     for (std::size_t i = 0; i < title_lines_.size(); ++i) {
         const auto below = static_cast<int>(title_lines_.size() - 1 - i);
-        write_top(title_lines_[i], " ", end_px, title_baseline_px() - below * title_line_px(), title_size_px,
-                  color_, list);
+        write_top(title_lines_[i], " ", title_baseline_px() - below * title_line_px(), title_size_px, color_,
+                  list);
     }
     for (const OverlayTextDef& text : def_.texts) {
         const double time_s = caption.time_s.value_or(-1.0);
@@ -340,12 +359,12 @@ void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& li
     }
     constexpr std::uint8_t kDim = 0xb0;
     if (def_.method)
-        write_top(caption.method, ", ", end_px, method_baseline_px(), em_px_,
-                  {color_.r, color_.g, color_.b, kDim}, list);
+        write_top({caption.method, room_px(method_baseline_px_ - rounded(kAscent * em_px_))}, ", ",
+                  method_baseline_px_, em_px_, {color_.r, color_.g, color_.b, kDim}, list);
 }
 
-int Overlay::fitting_title_px(int end_px) {
-    const int room_px = end_px - edge_px_;
+int Overlay::fitting_title_px() {
+    const int room_px = title_lines_[0].room_px;
     int size_px = title_px();
     const int width_px = font_.width_px(def_.title, size_px);
     if (width_px <= room_px) return size_px;
@@ -383,38 +402,43 @@ int Overlay::draw_scale_bar(double pixels_per_metre, int begin_px, int right_px,
     return text_px - rounded(kLine * em_px_);
 }
 
-int Overlay::draw_legend(DrawList& list) {
+Overlay::Legend Overlay::lay_out_legend() {
     const NumberTitle title = title_of(*scale_);
-    const std::string name = translated(title.text, def_.language);
     const auto number = [&](double value) {
         return localized(display_number(value / title.unit), def_.language);
     };
-    const std::string first = (scale_->is_cut && scale_->low < 0.0 ? "≤ " : "") + number(scale_->low);
-    const std::string last = (scale_->is_cut ? "≥ " : "") + number(scale_->high);
-    const auto half_px = [&](const std::string& text) { return font_.width_px(text, em_px_) / 2; };
-    const int bar_px = rounded(kBarLength * side_px_);
-    const int bar_end_px = width_ - edge_px_ - half_px(last);
-    const int bar_px0 = bar_end_px - bar_px;
-    const int title_end_px = bar_px0 - rounded(kGap * em_px_);
-    const int title_x_px = title_end_px - font_.width_px(name, em_px_);
-    if (title_x_px < edge_px_) return width_ - edge_px_;
+    Legend legend;
+    legend.name = translated(title.text, def_.language);
+    legend.first = (scale_->is_cut && scale_->low < 0.0 ? "≤ " : "") + number(scale_->low);
+    legend.middle = number(0.5 * (scale_->low + scale_->high));
+    legend.last = (scale_->is_cut ? "≥ " : "") + number(scale_->high);
+    legend.bar_end_px = width_ - edge_px_ - font_.width_px(legend.last, em_px_) / 2;
+    legend.bar_x_px = legend.bar_end_px - rounded(kBarLength * side_px_);
+    legend.x_px = legend.bar_x_px - rounded(kGap * em_px_) - font_.width_px(legend.name, em_px_);
+    return legend;
+}
+
+void Overlay::draw_legend(DrawList& list) {
+    const auto [name, first, middle, last, x_px, bar_px0, bar_end_px] = lay_out_legend();
+    if (x_px < edge_px_) return;
+    const auto half_px = [this](const std::string& text) { return font_.width_px(text, em_px_) / 2; };
+    const int bar_px = bar_end_px - bar_px0;
     const int baseline_px = edge_px_ + rounded(kAscent * em_px_);
-    font_.write({title_x_px, baseline_px, em_px_, color_, name}, list);
+    font_.write({x_px, baseline_px, em_px_, color_, name}, list);
     const int height_px = rounded(kLegendHeight * em_px_);
     const int top_px = baseline_px - (rounded(kAscent * em_px_) + height_px) / 2;
     draw_gradient({bar_px0, top_px, bar_end_px, top_px + height_px}, list);
     const int line_px = std::max(1, rounded(kBarWidth * side_px_));
-    const auto add_tick = [&](int x_px, const std::string& text) {
+    const auto add_tick = [&](int tick_x_px, const std::string& text) {
         const int tick_end_px = top_px + height_px + std::max(1, rounded(kLegendTick * em_px_));
-        list.add_box({x_px, top_px + height_px, x_px + line_px, tick_end_px}, color_);
-        font_.write({x_px + line_px / 2 - half_px(text), legend_baseline_px(), em_px_, color_, text}, list);
+        list.add_box({tick_x_px, top_px + height_px, tick_x_px + line_px, tick_end_px}, color_);
+        font_.write({tick_x_px + line_px / 2 - half_px(text), legend_baseline_px(), em_px_, color_, text},
+                    list);
     };
     add_tick(bar_px0, first);
-    const std::string middle = number(0.5 * (scale_->low + scale_->high));
     const int taken_px = std::max(half_px(first), half_px(last)) + half_px(middle) + rounded(kGap * em_px_);
     if (taken_px <= bar_px / 2) add_tick((bar_px0 + bar_end_px - line_px) / 2, middle);
     add_tick(bar_end_px - line_px, last);
-    return title_x_px - rounded(kLine * em_px_);
 }
 
 void Overlay::draw_gradient(const PixelRect& bar, DrawList& list) const {
@@ -426,26 +450,11 @@ void Overlay::draw_gradient(const PixelRect& bar, DrawList& list) const {
     }
 }
 
-void Overlay::write_top(std::string text, std::string_view separator, int end_px, int baseline_px,
-                        int size_px, Color color, DrawList& list) {
-    const int room_px = end_px - edge_px_;
-    if (font_.width_px(text, size_px) > room_px) {
-        const std::string mark = "…";
-        int end = font_.width_px(mark, size_px);
-        std::size_t kept = 0;
-        for (std::size_t next = 0; next < text.size(); kept = next) {
-            next = end_of_character(text, next);
-            end += font_.width_px(std::string_view(text).substr(kept, next - kept), size_px);
-            if (end > room_px) break;
-        }
-        const std::size_t last = text.rfind(separator, kept);
-        constexpr double kMinUsed = 0.75;
-        const bool is_long_word =
-            separator == " " && font_.width_px(text.substr(0, last), size_px) < kMinUsed * room_px;
-        if (last != std::string::npos && last > 0 && !is_long_word) kept = last;
-        text = kept == 0 ? "" : text.substr(0, kept) + mark;
-    }
-    font_.write({edge_px_, baseline_px, size_px, color, std::move(text)}, list);
+void Overlay::write_top(const TopLine& line, std::string_view separator, int baseline_px, int size_px,
+                        Color color, DrawList& list) {
+    font_.write(
+        {edge_px_, baseline_px, size_px, color, font_.shortened(line.text, size_px, line.room_px, separator)},
+        list);
 }
 
 }  // namespace corda::view

@@ -40,8 +40,9 @@ struct PoseTime {
 };
 
 /// Texts and scale bar at the edges of a picture, and the live plots. Time and energy are at the lower
-/// left, the scale bar at the lower right, title and method at the upper left, the legend at the upper right.
-/// A long title or method is shortened; other items without room are left out.
+/// left, the scale bar at the lower right, title and method at the upper left, the legend at the upper right,
+/// above them if there is little room next to it. A long title or method is shortened; other items without
+/// room are left out.
 class Overlay {
   public:
     /// `interval_s`: frame interval, which sets the number of decimals of the time.
@@ -50,7 +51,10 @@ class Overlay {
     /// Space that the camera must leave free.
     [[nodiscard]] Insets insets() const;
     /// Sets the scale of the legend; without a scale there is no legend.
-    void set_scale(const ColorScale& scale) { scale_ = scale; }
+    void set_scale(const ColorScale& scale) {
+        scale_ = scale;
+        lay_out_top();
+    }
     /// Sets the scale of the energies of captions, which decides on their unit.
     void set_energy_scale(double scale_j) { energy_scale_j_ = scale_j; }
     /// Sets the scale of arrows and the size of the largest one.
@@ -70,15 +74,31 @@ class Overlay {
     void draw(const Caption& caption, double pixels_per_metre, DrawList& list);
 
   private:
+    /// A line at the upper left.
+    struct TopLine {
+        std::string text;
+        int room_px = 0;
+    };
+    /// The legend of colours: its texts, its left end and the ends of its bar.
+    struct Legend {
+        std::string name, first, middle, last;
+        int x_px = 0;
+        int bar_x_px = 0;
+        int bar_end_px = 0;
+    };
+
     [[nodiscard]] bool has_bottom() const;
     [[nodiscard]] int title_px() const;
-    /// The lines of a title that does not fit into one.
-    [[nodiscard]] std::vector<std::string> wrapped_title();
+    /// Places title and method next to the legend, or below it.
+    void lay_out_top();
+    /// Breaks the title into lines; false if it has to be shortened.
+    [[nodiscard]] bool wrap_title();
+    /// Width of a line at the upper left whose upper edge is at `top_px`.
+    [[nodiscard]] int room_px(int top_px) const;
     void draw_text(const OverlayTextDef& text, DrawList& list);
     /// The baselines from the upper edge; of the title's last line.
     [[nodiscard]] int title_baseline_px() const;
     [[nodiscard]] int title_line_px() const;
-    [[nodiscard]] int method_baseline_px() const;
     /// Baseline of the legend's numbers.
     [[nodiscard]] int legend_baseline_px() const;
     /// Left aligned without padding: the same text at the same place in a film of any duration.
@@ -91,19 +111,18 @@ class Overlay {
     int draw_scale_bar(double pixels_per_metre, int begin_px, int right_px, DrawList& list);
     /// Left end of the legend of arrows, at the lower right; the right edge of texts without one.
     [[nodiscard]] int arrow_x_px() const;
-    /// Draws the legend; returns where it begins.
-    int draw_legend(DrawList& list);
+    [[nodiscard]] Legend lay_out_legend();
+    void draw_legend(DrawList& list);
     /// The box of a label in the direction of its line, turned by an eighth turn `turns` times.
     [[nodiscard]] PixelRect label_box(const BodyLabel& label, PixelPoint at, PixelPoint from, int turns,
                                       double clear_px);
     void draw_label(const BodyLabel& label, PixelPoint at, PixelPoint from, DrawList& list);
     void draw_gradient(const PixelRect& bar, DrawList& list) const;
-    /// Size of the title: smaller, down to the size of the other texts, if it would not end before `end_px`.
-    int fitting_title_px(int end_px);
-    /// Writes a text at the left of an upper baseline, shortened to end before `end_px`: at a separator if it
-    /// has one; a title inside of a word if a quarter of its room would stay empty.
-    void write_top(std::string text, std::string_view separator, int end_px, int baseline_px, int size_px,
-                   Color color, DrawList& list);
+    /// Size of a title of one line: smaller, down to the size of the other texts, if it would not fit.
+    int fitting_title_px();
+    /// Writes a line at the left of an upper baseline, shortened at a separator.
+    void write_top(const TopLine& line, std::string_view separator, int baseline_px, int size_px, Color color,
+                   DrawList& list);
 
     OverlayDef def_;
     bool time_;
@@ -123,8 +142,11 @@ class Overlay {
     int height_;
     int side_px_;  ///< the shorter one of the frame
     int em_px_;
-    int edge_px_;  ///< from the edges of the frame to the texts
-    std::vector<std::string> title_lines_;
+    int edge_px_;          ///< from the edges of the frame to the texts
+    int legend_x_px_ = 0;  ///< where the room next to the legend ends
+    int title_top_px_ = 0;
+    int method_baseline_px_ = 0;
+    std::vector<TopLine> title_lines_;
     int decimals_ = 2;
     Font font_;
     std::vector<PlotPanel> plots_;

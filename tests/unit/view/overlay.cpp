@@ -214,14 +214,15 @@ TEST(Legends, StayInTheirFrameAndKeepClearOfTheTitle) {
         const DrawList list = with_legend(kilonewtons(), def, width, height);
         ASSERT_GE(list.texts.size(), 4U) << width;
         Font font;
-        const PixelRect legend = font.ink(list.texts[0]);
+        PixelRect legend;
+        for (std::size_t i = 0; i < 4; ++i) legend = legend.united(font.ink(list.texts[i]));
         for (const Text& text : list.texts) {
             const PixelRect ink = font.ink(text);
             EXPECT_EQ(ink, ink.intersected({0, 0, width, height})) << text.utf8;
         }
-        if (list.texts.size() > 4) {
-            for (std::size_t i = 4; i < list.texts.size(); ++i)
-                EXPECT_LT(font.ink(list.texts[i]).x1, legend.x0) << width;
+        for (std::size_t i = 4; i < list.texts.size(); ++i) {
+            const PixelRect ink = font.ink(list.texts[i]);
+            EXPECT_TRUE(ink.x1 < legend.x0 || ink.y0 >= legend.y1) << width;
         }
         OverlayDef alone;
         alone.legend = true;
@@ -273,6 +274,40 @@ TEST(Titles, UseTheirRoomBeforeTheyAreCut) {
     const Text word = drawn(def, {}, 600, 720).texts.at(1);  // below "Seile:"
     EXPECT_TRUE(word.utf8.ends_with("…"));
     EXPECT_GT(Font().width_px(word.utf8, word.size_px), 450);
+}
+
+TEST(Titles, StandBelowALegendThatLeavesThemNoRoom) {
+    OverlayDef def;
+    def.title = "Zwei Seile, eine sehr lange Überschrift, die nicht in eine Zeile passt";
+    const DrawList list = with_legend(kilonewtons(), def, 640, 720);
+    EXPECT_EQ(list.texts.at(4).utf8, def.title);
+    EXPECT_GT(Font().ink(list.texts[4]).y0, Font().ink(list.texts[1]).y1);
+    EXPECT_EQ(with_legend(kilonewtons(), def, 450, 720).texts.size(), 6U);
+    // Next to it, several lines as well, of which the last alone is shortened, if any.
+    for (int width = 400; width < 1400; width += 50) {
+        const Words all = words(with_legend(kilonewtons(), def, width, 500));
+        for (std::size_t i = 4; i + 1 < all.size(); ++i) EXPECT_FALSE(all[i].ends_with("…")) << all[i];
+    }
+}
+
+TEST(Methods, StandBelowALegendThatLeavesThemNoRoom) {
+    OverlayDef def;
+    def.method = true;
+    def.legend = true;
+    def.time = def.scale_bar = false;
+    const Caption caption{0.0, {}, "exact, error below 0.0012 px"};
+    for (const auto& [width, is_below] : {std::pair{500, true}, {1280, false}}) {
+        DrawList list;
+        list.width = width;
+        list.height = 720;
+        Overlay overlay(def, by_tension(), width, 720, kFrameS);
+        overlay.set_scale(kilonewtons());
+        overlay.draw(caption, 100.0, list);
+        ASSERT_EQ(list.texts.size(), 5U);
+        EXPECT_EQ(list.texts[4].utf8, caption.method);
+        EXPECT_EQ(Font().ink(list.texts[4]).y0 > Font().ink(list.texts[1]).y1, is_below);
+        EXPECT_GT(overlay.insets().top_px, list.texts[4].y_px);
+    }
 }
 
 TEST(Titles, OfSeveralLinesMoveThePictureDown) {
