@@ -32,7 +32,8 @@ constexpr double kMinPanelHeight = 13.0;
 constexpr double kMinRowWidth = 12.0;  // of panels in a row below the picture
 constexpr double kTight = 0.85;        // of the height in a column, for the smallest texts
 constexpr int kMaxNameRows = 3;
-constexpr double kPerLabel = 3.0;  // of the height
+constexpr double kSmallestName = 0.6;  // of the em
+constexpr double kPerLabel = 3.0;      // of the height
 
 constexpr int kMinLabels = 2;
 constexpr int kMaxLabels = 6;
@@ -176,6 +177,14 @@ void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_color
 }
 
 void PlotPanel::place_names(Font& font) {
+    const int least_px = std::max(kMinEmPx, rounded(kSmallestName * plot_.em_px));
+    for (name_em_px_ = plot_.em_px; name_em_px_ >= least_px; --name_em_px_)
+        if (add_names(font) && room_px() >= rounded(kMinBox * plot_.em_px)) return;
+    name_em_px_ = plot_.em_px;
+    static_cast<void>(add_names(font));
+}
+
+bool PlotPanel::add_names(Font& font) {
     names_.clear();
     name_rows_ = 0;
     const int begin_px = panel_.x0 + edge_px_;
@@ -183,34 +192,41 @@ void PlotPanel::place_names(Font& font) {
     int x_px = begin_px;
     for (const PixelCurve& curve : curves_) {
         if (curve.name.empty()) continue;
-        const int name_px = font.width_px(curve.name, plot_.em_px);
+        const std::string text = font.shortened(curve.name, name_em_px_, end_px - begin_px);
+        const int name_px = font.width_px(text, name_em_px_);
         if (x_px > begin_px && x_px + name_px > end_px) {
             x_px = begin_px;
-            if (++name_rows_ == kMaxNameRows) return;
+            if (++name_rows_ == kMaxNameRows) return false;
         }
-        names_.push_back({curve.name, curve.color, x_px, name_rows_});
-        x_px += name_px + plot_.em_px;
+        names_.push_back({text, curve.color, x_px, name_rows_});
+        x_px += name_px + name_em_px_;
     }
     if (!names_.empty()) ++name_rows_;
+    return true;
+}
+
+int PlotPanel::room_px() const {
+    const int gap_px = rounded(kGap * plot_.em_px);
+    const int top_px = panel_.y0 == 0 ? edge_px_ : gap_px;
+    const int bottom_px = panel_.y1 == height_px_ ? edge_px_ : gap_px;
+    return panel_.height() - top_px - bottom_px - above_px() - plot_.title_px();
+}
+
+int PlotPanel::above_px() const {
+    return name_rows_ * rounded(kLine * name_em_px_) + rounded((kAscent + kAboveBox) * plot_.em_px);
 }
 
 bool PlotPanel::place_box(bool is_over_time, int least_label_px, Font& font) {
     const int gap_px = rounded(kGap * plot_.em_px);
     const int least_px = rounded(kMinBox * plot_.em_px);
     const int top_px = panel_.y0 == 0 ? edge_px_ : gap_px;
-    const int bottom_px = panel_.y1 == height_px_ ? edge_px_ : gap_px;
-    int above_px = 0;
-    int all_px = 0;
-    for (; name_rows_ >= 0; --name_rows_) {
-        above_px = name_rows_ * rounded(kLine * plot_.em_px) + rounded((kAscent + kAboveBox) * plot_.em_px);
-        all_px = panel_.height() - top_px - bottom_px - above_px - plot_.title_px();
-        if (all_px >= least_px) break;
+    for (; name_rows_ > 0 && room_px() < least_px; --name_rows_)
         std::erase_if(names_, [this](const Name& name) { return name.row == name_rows_ - 1; });
-    }
+    const int all_px = room_px();
     if (all_px < least_px) return false;
     const int most_px = width_px_ > height_px_ ? rounded(kHeightPerWidth * panel_.width()) : all_px;
     const int height_px = std::min(all_px, most_px);
-    plot_.box.y0 = panel_.y0 + top_px + (all_px - height_px) / 2 + above_px;
+    plot_.box.y0 = panel_.y0 + top_px + (all_px - height_px) / 2 + above_px();
     plot_.box.y1 = plot_.box.y0 + height_px;
     plot_.y.low_px = plot_.box.y1 - 1;
     plot_.y.high_px = plot_.box.y0;
@@ -264,16 +280,13 @@ void PlotPanel::draw_curves(double time_s, DrawList& list) const {
 void PlotPanel::draw_axes(DrawList& list, Font& font) const {
     if (!is_shown_) return;
     plot_.draw_axes(faint(text_color_, kBoxAlpha), text_color_, list, font);
-    const auto write = [&](const std::string& text, int x_px, int y_px, Color color) {
-        font.write({x_px, y_px, plot_.em_px, color, text}, list);
-    };
-    const int row_px = rounded(kLine * plot_.em_px);
+    const int row_px = rounded(kLine * name_em_px_);
     const int title_px = plot_.box.y0 - name_rows_ * row_px - rounded(kAboveBox * plot_.em_px);
     const int last_px = panel_.x1 - edge_px_ - font.width_px(plot_.y.title, plot_.em_px);
-    write(plot_.y.title, names_.empty() ? std::min(plot_.box.x0, last_px) : names_.front().x_px, title_px,
-          text_color_);
+    const int title_x_px = names_.empty() ? std::min(plot_.box.x0, last_px) : names_.front().x_px;
+    font.write({title_x_px, title_px, plot_.em_px, text_color_, plot_.y.title}, list);
     for (const Name& name : names_)
-        write(name.text, name.x_px, title_px + (name.row + 1) * row_px, name.color);
+        font.write({name.x_px, title_px + (name.row + 1) * row_px, name_em_px_, name.color, name.text}, list);
 }
 
 }  // namespace corda::view

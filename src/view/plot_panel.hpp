@@ -94,7 +94,14 @@ class PlotPanel {
         int row = 0;
     };
 
+    /// Places the names in rows, smaller ones if that shows them all.
     void place_names(Font& font);
+    /// Places names of size `name_em_px_`; false if there is no room for all.
+    [[nodiscard]] bool add_names(Font& font);
+    /// Height that titles and names leave to the box.
+    [[nodiscard]] int room_px() const;
+    /// Height of the title and the names above the box.
+    [[nodiscard]] int above_px() const;
     /// Places the box and finds the labels; false if there is no room.
     [[nodiscard]] bool place_box(bool is_over_time, int least_label_px, Font& font);
 
@@ -110,6 +117,7 @@ class PlotPanel {
     std::vector<PixelCurve> curves_;
     std::vector<Name> names_;
     int name_rows_ = 0;
+    int name_em_px_ = 0;
 };
 
 }  // namespace corda::view

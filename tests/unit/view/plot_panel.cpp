@@ -229,6 +229,26 @@ TEST(PlotPanel, HasARowPerPowerOf10OfALogarithm) {
     }
 }
 
+TEST(PlotPanel, NamesEveryCurveInSmallerLettersIfItMust) {
+    PlotData data = waves();
+    data.curves[0].name = "kinetisch";
+    data.curves[1].name = "potenziell";
+    data.curves.push_back(data.curves[0]);
+    data.curves[2].name = "gesamt";
+    const PlotLayout layout = lay_out_plots(5, 640, 360);
+    DrawList list;
+    list.width = 640;
+    list.height = 360;
+    Font font;
+    PlotPanel panel({}, 640, 360, layout.panels[0], layout.em_px);
+    panel.set_data(data, {}, 0, font);
+    panel.draw_axes(list, font);
+    for (const PlotData::Curve& curve : data.curves) {
+        const auto is_name = [&](const Text& text) { return text.utf8 == curve.name; };
+        EXPECT_TRUE(std::any_of(list.texts.begin(), list.texts.end(), is_name)) << curve.name;
+    }
+}
+
 TEST(PlotPanel, LeavesOutNamesThatTakeTooMuchRoom) {
     PlotData data = waves();
     data.curves.resize(1);
