@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <fontconfig/fontconfig.h>
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -54,17 +56,25 @@ std::optional<FallbackFont> find_font(char32_t character) {
 
 }  // namespace
 
-bool can_fall_back(char32_t character) {
+bool needs_shaping(char32_t character) {
     struct Range {
         char32_t first;
         char32_t last;
     };
-    constexpr Range kExcluded[] = {{0x0000, 0x001f}, {0x0590, 0x109f},   {0x1700, 0x18af},
-                                   {0x1900, 0x1cff}, {0xa800, 0xabff},   {0xfb1d, 0xfdff},
-                                   {0xfe70, 0xfeff}, {0x10a00, 0x11fff}, {0x1f000, 0x1fbff}};
-    for (const Range& range : kExcluded)
-        if (character >= range.first && character <= range.last) return false;
-    return true;
+    constexpr Range kShaped[] = {{0x0590, 0x109f}, {0x1700, 0x18af},   {0x1900, 0x1c7f},  {0x1cc0, 0x1cff},
+                                 {0xa800, 0xa95f}, {0xa980, 0xab2f},   {0xabc0, 0xabff},  {0xfb1d, 0xfdff},
+                                 {0xfe70, 0xfefe}, {0x10800, 0x11fff}, {0x1e800, 0x1efff}};
+    return std::any_of(std::begin(kShaped), std::end(kShaped), [character](const Range& range) {
+        return character >= range.first && character <= range.last;
+    });
+}
+
+bool is_emoji(char32_t character) {
+    return character >= 0x1f000 && character <= 0x1fbff;
+}
+
+bool can_fall_back(char32_t character) {
+    return character >= 0x20 && !needs_shaping(character) && !is_emoji(character);
 }
 
 const FallbackFont* fallback_font(char32_t character) {

@@ -159,9 +159,16 @@ Font::~Font() = default;
 std::string missing_glyph(const std::string& text) {
     const std::u32string missing = text.empty() ? U"" : Font().missing(text);
     if (missing.empty()) return "";
-    std::string names;
+    std::string shaped;
+    std::string emoji;
+    std::string controls;
+    std::string others;
     std::string packages;
     for (const char32_t character : missing) {
+        std::string& names = needs_shaping(character)   ? shaped
+                             : is_emoji(character)      ? emoji
+                             : can_fall_back(character) ? others
+                                                        : controls;
         names += fmt::format("{}U+{:04X}", names.empty() ? "" : ", ", static_cast<std::uint32_t>(character));
         if (!can_fall_back(character)) continue;
         // Hangul, kana and ideographs, and the signs between them.
@@ -172,11 +179,20 @@ std::string missing_glyph(const std::string& text) {
         const std::string package = is_east_asian ? " fonts-noto-cjk" : " fonts-noto-core";
         if (packages.find(package) == std::string::npos) packages += package;
     }
+    std::string reasons;
+    const auto add = [&reasons](const std::string& reason) { reasons += reason + "; "; };
+    const auto verb = [](const std::string& names, const char* one, const char* several) {
+        return names + (names.find(',') == std::string::npos ? one : several);
+    };
+    if (!shaped.empty()) add(verb(shaped, " needs", " need") + " text shaping, which is not done");
+    if (!emoji.empty())
+        add(verb(emoji, " is an emoji", " are emoji") + ", whose coloured fonts are not drawn");
+    if (!controls.empty()) add("the font, DejaVu Sans, has no " + controls);
     const char* const leave_out =
         missing.size() == 1 ? "leave that character out" : "leave these characters out";
-    if (packages.empty()) return fmt::format("the font, DejaVu Sans, has no {}; {}", names, leave_out);
-    return fmt::format("no font of this machine has {}; install one (Debian: apt-get install{}), or {}",
-                       names, packages, leave_out);
+    if (others.empty()) return reasons + leave_out;
+    return fmt::format("{}no font of this machine has {}; install one (Debian: apt-get install{}), or {}",
+                       reasons, others, packages, leave_out);
 }
 
 std::vector<std::string> fallback_names(const std::vector<std::string>& texts) {
@@ -197,8 +213,9 @@ std::u32string Font::missing(std::string_view utf8) const {
     while (!utf8.empty()) {
         const char32_t character = take_character(utf8);
         const bool is_known = missing.find(character) != std::u32string::npos;
-        if (!is_known && FT_Get_Char_Index(impl_->file.face(), character) == 0 &&
-            fallback_font(character) == nullptr)
+        if (!is_known &&
+            (needs_shaping(character) ||
+             (FT_Get_Char_Index(impl_->file.face(), character) == 0 && fallback_font(character) == nullptr)))
             missing += character;
     }
     return missing;

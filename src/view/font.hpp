@@ -21,8 +21,14 @@ struct FallbackFont {
     std::string version;
 };
 
-/// False for characters that are never looked up: emoji, and those of scripts that run from the right or
-/// whose letters change next to others, which takes more than placing glyphs side by side.
+/// True for scripts that run from the right or whose letters change next to others, which takes more than
+/// placing glyphs side by side.
+[[nodiscard]] bool needs_shaping(char32_t character);
+
+/// True for emoji, whose fonts hold coloured pictures.
+[[nodiscard]] bool is_emoji(char32_t character);
+
+/// False for characters that are never looked up: those above and control characters.
 [[nodiscard]] bool can_fall_back(char32_t character);
 
 /// The font that fontconfig finds for a character; null if there is none. Threads may call it at once. Fonts
@@ -64,7 +70,7 @@ class Font {
     Font& operator=(Font&&) noexcept;
     ~Font();
 
-    /// The characters of a text that no font has, each once and in order.
+    /// The characters of a text that no font has or that need shaping, each once and in order.
     [[nodiscard]] std::u32string missing(std::string_view utf8) const;
     /// The parts of a text by their fonts.
     [[nodiscard]] std::vector<FontRun> runs_of(std::string_view utf8) const;
@@ -84,8 +90,8 @@ class Font {
     std::unique_ptr<Impl> impl_;
 };
 
-/// The reason a text cannot be shown: "the font, DejaVu Sans, has no U+1F9F6; leave that character out", or
-/// install a font. Empty if it can.
+/// The reasons a text cannot be shown: "U+0628 needs text shaping, which is not done; leave that character
+/// out", or install a font. Empty if it can.
 [[nodiscard]] std::string missing_glyph(const std::string& text);
 
 /// Names and versions of the fallback fonts of texts: "WenQuanYi Micro Hei 0.200".

@@ -435,7 +435,7 @@ TEST(SceneErrors, Overlay) {
         {overlay("title = \"a\\nb\""), "swing.toml:4:9: overlay.title: ", "has a control character"},
         {overlay("title = \"a\\u202eb\""), "swing.toml:4:9: overlay.title: ", "has a control character"},
         {overlay("title = \"yarn \\U0001f9f6\""), "swing.toml:4:9: overlay.title: ",
-         "the font, DejaVu Sans, has no U+1F9F6; leave that character out"},
+         "U+1F9F6 is an emoji, whose coloured fonts are not drawn; leave that character out"},
     });
 }
 

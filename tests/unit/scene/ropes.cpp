@@ -56,7 +56,7 @@ TEST(SceneHang, HasLinksOrParticles) {
         {rope + "hang = { particles = 1, length = 1 }",
          "swing.toml:3:22: rope[0].hang.particles: ", "1 is not >= 2"},
         {rope + "hang = { links = 2, length = 1 }\nlabel = \"\\U0001f9f6\"",
-         "swing.toml:4:9: rope[0].label: ", "the font, DejaVu Sans, has no U+1F9F6"},
+         "swing.toml:4:9: rope[0].label: ", "U+1F9F6 is an emoji"},
     });
 }
 

@@ -62,8 +62,15 @@ TEST(FallbackFonts, AreNotAskedForEmojiAndLettersThatChange) {
 
 TEST(FallbackFonts, AreAdvisedWhereTheyWouldHelp) {
     EXPECT_EQ(missing_glyph("漢字 ok"), "");
-    EXPECT_EQ(missing_glyph("\U0001f9f6\u0915"),
-              "the font, DejaVu Sans, has no U+1F9F6, U+0915; leave these characters out");
+    // DejaVu Sans has the Arabic letters.
+    EXPECT_EQ(missing_glyph("world \u0633\u0644"),
+              "U+0633, U+0644 need text shaping, which is not done; leave these characters out");
+    EXPECT_EQ(
+        missing_glyph("\U0001f9f6\u0e01"),
+        "U+0E01 needs text shaping, which is not done; U+1F9F6 is an emoji, whose coloured fonts are not "
+        "drawn; leave these characters out");
+    for (const char32_t character : {0x05d0, 0x0628, 0x0915, 0x0e01}) EXPECT_TRUE(needs_shaping(character));
+    for (const char32_t character : {0x0041, 0x0416, 0x6f22, 0x10d0}) EXPECT_FALSE(needs_shaping(character));
     // Not assigned to any character.
     EXPECT_EQ(
         missing_glyph("\U0002fa20"),
