@@ -91,20 +91,30 @@ ArrowLayer::ArrowLayer(const System& system, Vec2 gravity_m_s2, const StyleDef& 
     for (std::size_t b = 0; b < bodies; b += (bodies + kMaxArrows - 1) / kMaxArrows) {
         const Body& body = system.bodies[b];
         const std::size_t most = std::clamp<std::size_t>(kMaxArrows / bodies, 1, kMaxPerRope);
-        for (const std::size_t i : chosen(system, body, body.is_net ? 3 * most : most)) {
-            if (kind_ != Arrows::kTension) places_.push_back({i, 0});
+        std::size_t before = 0;  // the bar of the place before, which is nearer to the end
+        const std::vector<std::size_t> particles = chosen(system, body, body.is_net ? 3 * most : most);
+        for (const std::size_t i : particles) {
+            if (kind_ != Arrows::kTension) places_.push_back({i, 0, HUGE_VAL});
             const bool both = body.is_net || body.link_count <= kLinksOfPendulum;
             for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k) {
                 const bool is_end = system.bars[k].b == i || (both && system.bars[k].a == i);
-                if (kind_ == Arrows::kTension && is_end) places_.push_back({i, k});
+                if (kind_ != Arrows::kTension || !is_end) continue;
+                double path_m = both || i == particles.front() ? HUGE_VAL : 0.0;
+                for (std::size_t bar = k; !both && bar++ < before;) path_m += system.bars[bar].rest_m;
+                places_.push_back({i, k, path_m});
+                before = k;
             }
         }
     }
 }
 
-std::vector<Arrow> ArrowLayer::of(const State& state) const {
+std::vector<Arrow> ArrowLayer::of(const State& state, double apart_m) const {
     std::vector<Arrow> arrows;
-    for (const auto& [i, k] : places_) {
+    double gone_m = HUGE_VAL;
+    for (const auto& [i, k, path_m] : places_) {
+        gone_m += path_m;
+        if (gone_m < apart_m) continue;
+        gone_m = 0.0;
         const Vec2 at_m{state.x_m[i], state.y_m[i]};
         Vec2 value = system_->mass_kg[i] * gravity_m_s2_;
         if (kind_ == Arrows::kVelocity) {
@@ -134,7 +144,10 @@ void ArrowLayer::draw(const State& state, const Camera& camera, DrawList& list) 
     if (pixels_per_unit_ == 0.0) return;
     list.add_layer(color_);
     list.layers.back().is_note = true;
-    for (const Arrow& arrow : of(state)) {
+    const double head_px = kHeadLength * shaft_px(side_px_);
+    const double longest_px = pixels_per_unit_ * extents_.largest();
+    for (const Arrow& arrow : of(state, (longest_px + head_px) / camera.pixels_per_metre())) {
+        if (pixels_per_unit_ * sim::length(arrow.value.x, arrow.value.y) < head_px) continue;
         const PixelPoint from{camera.x_px(arrow.at_m.x), camera.y_px(arrow.at_m.y)};
         add_arrow(from,
                   {from.x + pixels_per_unit_ * arrow.value.x, from.y - pixels_per_unit_ * arrow.value.y},

@@ -52,12 +52,13 @@ class ArrowLayer {
     /// `system` must outlive this.
     ArrowLayer(const System& system, Vec2 gravity_m_s2, const StyleDef& style, double side_px);
 
-    /// The arrows of a state, which must have fields_of() them.
-    [[nodiscard]] std::vector<Arrow> of(const State& state) const;
+    /// The arrows of a state, which must have fields_of() them; those along a rope at least `apart_m` apart.
+    [[nodiscard]] std::vector<Arrow> of(const State& state, double apart_m = 0.0) const;
     /// Sets the scale by the extents during the motion. Nothing is drawn before the call.
     void set_extents(const ArrowExtents& extents);
     /// Adds the extents of all arrows, as a camera that moves sees them if `extents` are given, to a list.
     void list(std::vector<Drawn>& drawn, const ArrowExtents* extents = nullptr) const;
+    /// Draws the arrows that are longer than their heads. Those of tension in a rope do not touch each other.
     void draw(const State& state, const Camera& camera, DrawList& list) const;
     [[nodiscard]] double pixels_per_unit() const { return pixels_per_unit_; }
 
@@ -66,6 +67,7 @@ class ArrowLayer {
     struct Place {
         std::size_t particle;
         std::size_t bar;
+        double path_m;  ///< along the rope from the place before; HUGE_VAL: the arrow is not along it
     };
 
     const System* system_;

@@ -94,6 +94,31 @@ TEST(Arrows, HaveTheLongestAtAShareOfThePicture) {
     EXPECT_GT(list.capsules[0].length, 0.9F * 0.22F * 480.0F);
 }
 
+TEST(Arrows, OfTensionInARopeDoNotTouchAndSpecksAreLeftOut) {
+    const System rope = build_system(std::vector{reference::straight_rope(40, 4.0, 0.0)});
+    State state = state_of(rope);
+    ArrowLayer layer = layer_of(rope, Arrows::kTension);
+    ArrowExtents extents;
+    for (const Arrow& arrow : layer.of(state)) extents.include(arrow);
+    layer.set_extents(extents);
+    const double longest_m = 1.0;
+    const std::vector<Arrow> apart = layer.of(state, longest_m);
+    ASSERT_GE(apart.size(), 3U);
+    EXPECT_LT(apart.size(), layer.of(state).size());
+    for (std::size_t i = 1; i < apart.size(); ++i)
+        EXPECT_GE(sim::length(apart[i].at_m.x - apart[i - 1].at_m.x, apart[i].at_m.y - apart[i - 1].at_m.y),
+                  longest_m - 1e-9);
+    const auto lines = [&] {
+        DrawList list;
+        list.width = list.height = static_cast<int>(kShorterPx);
+        layer.draw(state, Camera(CameraDef{Vec2{}, 5.0}, rope.origin_m, list.width, list.height), list);
+        return list.capsules.size();
+    };
+    EXPECT_GT(lines(), 0U);
+    for (double& tension_n : state.tension_n) tension_n *= 0.01;
+    EXPECT_EQ(lines(), 0U);
+}
+
 TEST(Arrows, ExtendAsFarAsTheyWereIncluded) {
     ArrowExtents extents;
     extents.include({{1.0, 2.0}, {3.0, 0.0}});
