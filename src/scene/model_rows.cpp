@@ -87,7 +87,8 @@ std::vector<Key> body_keys(std::string_view section, std::vector<Key> keys, std:
          "drawn in one layer with the body before",
          "without a gap between them, in a gradient of colours; no outlines of balls"},
         {section, "label", of(Kind::kText), "", field(&BodyStyleDef::label),
-         "the name, drawn at its pin or its free end", "in legends, tables and messages too"},
+         "the name, drawn at its pin or its free end",
+         "shortened to 0.3 of the width of the picture; in legends, tables and messages too"},
     };
     keys.insert(keys.end(), common.begin(), common.end());
     return keys;
@@ -111,6 +112,9 @@ Binding is_string() {
 std::vector<Key> rope_keys() {
     const Type boolean = of(Kind::kBoolean);
     return {
+        {"rope", "label_at", one_of({"pin", "end"}), "",
+         otherwise("pin, unless labels share it", field(&BodyStyleDef::label_at)), "where label is drawn",
+         "end: next to the free end; a rope without one has its label at a pin"},
         {"rope", "payload", number({.low = 0.0, .high = kMass.high}), "kg", field(&RopeDef::payload_kg),
          "the mass added to the last particle"},
         {"rope", "pinned", list(Kind::kInteger, 0), "",

@@ -85,6 +85,9 @@ struct StyleDef {
     std::optional<Color> imaginary_bar_color;
 };
 
+/// Where a label is: above the first pinned particle, or at the free end.
+enum class LabelAt { kPin, kEnd };
+
 /// Style overrides of one rope or net.
 struct BodyStyleDef {
     std::optional<Color> color;
@@ -95,7 +98,9 @@ struct BodyStyleDef {
     /// Drawn in one layer with the body before it: without a halo between them, and in a gradient of the
     /// theme's colours along such a row, except bodies with a colour of their own.
     bool merged = false;
-    std::string label;  ///< its name, drawn at its pin or its free end; empty: none
+    std::string label;  ///< its name; empty: none
+    /// Where the label is; default: at the pin, unless several bodies with labels share it.
+    std::optional<LabelAt> label_at;
 };
 
 /// Content of a live plot: the energies over time; of the ropes that turn about one pin, the angle of the tip

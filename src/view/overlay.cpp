@@ -26,8 +26,13 @@ constexpr double kTitleLine = 1.3;  // of the title's
 constexpr double kTick = 0.4;       // at the ends of the scale bar
 constexpr double kLegendHeight = 0.6;
 constexpr double kLegendTick = 0.2;
+constexpr double kTallest = 1.1;      // above the baseline
 constexpr double kMethodRoom = 20.0;  // next to the legend
 constexpr int kGradientStepPx = 2;
+
+/// The share of the picture's width that a label takes at most, and the em that it may always take.
+constexpr double kMaxLabel = 0.3;
+constexpr double kShortLabel = 6.0;
 
 /// Least share of the picture's width next to a legend in which a title is wrapped.
 constexpr double kMinBeside = 0.5;
@@ -207,11 +212,14 @@ void Overlay::lay_out_top() {
 }
 
 void Overlay::draw_text(const OverlayTextDef& text, DrawList& list) {
-    const int width_px = font_.width_px(text.text, em_px_);
-    const int most_px = std::max(edge_px_, width_ - edge_px_ - width_px);
-    const int x_px = std::clamp(rounded(text.at.x * width_ - 0.5 * width_px), edge_px_, most_px);
-    font_.write({x_px, rounded(text.at.y * height_ + 0.5 * kAscent * em_px_), em_px_, color_, text.text},
-                list);
+    const std::string shown = font_.shortened(text.text, em_px_, list.width - 2 * edge_px_);
+    const int width_px = font_.width_px(shown, em_px_);
+    const int most_px = std::max(edge_px_, list.width - edge_px_ - width_px);
+    const int x_px = std::clamp(rounded(text.at.x * list.width - 0.5 * width_px), edge_px_, most_px);
+    const int highest_px = rounded(kTallest * em_px_);
+    const int lowest_px = std::max(highest_px, list.height - rounded(kDescent * em_px_));
+    const int y_px = rounded(text.at.y * list.height + 0.5 * kAscent * em_px_);
+    font_.write({x_px, std::clamp(y_px, highest_px, lowest_px), em_px_, color_, shown}, list);
 }
 
 int Overlay::legend_baseline_px() const {
@@ -236,9 +244,11 @@ Insets Overlay::insets() const {
 void Overlay::set_labels(std::vector<BodyLabel> labels, std::span<const MotionBounds> motion,
                          std::vector<Drawn>& drawn) {
     labels_ = std::move(labels);
-    for (const BodyLabel& label : labels_) {
+    const int most_px = rounded(std::max(kMaxLabel * width_, kShortLabel * em_px_));
+    for (BodyLabel& label : labels_) {
+        label.text = font_.shortened(std::move(label.text), em_px_, most_px);
         const double width_px = font_.width_px(label.text, em_px_);
-        const double clear_px = label.clear_px + kGap * em_px_;
+        const double clear_px = label.clear_px + (kGap + label.row * kLine) * em_px_;
         Drawn text;
         text.bounds = motion[label.particle];
         text.up_px = clear_px + kAscent * em_px_;
@@ -294,7 +304,8 @@ PixelRect Overlay::label_box(const BodyLabel& label, PixelPoint at, PixelPoint f
 }
 
 void Overlay::draw_label(const BodyLabel& label, PixelPoint at, PixelPoint from, DrawList& list) {
-    const PixelRect box = label_box(label, at, from, 0, label.clear_px + kGap * em_px_);
+    const double clear_px = label.clear_px + (kGap + label.row * kLine) * em_px_;
+    const PixelRect box = label_box(label, at, from, 0, clear_px);
     if (!box.empty()) font_.write({box.x0, box.y1, em_px_, color_, label.text}, list);
 }
 
@@ -305,6 +316,16 @@ void Overlay::draw_times(std::span<const PoseTime> poses, DrawList& list) {
     const int gap_px = rounded(kGap * em_px_);
     std::vector<PixelRect> taken{{0, height_ - edge_px_ - em_px_, width_, height_}};
     for (auto pose = poses.rbegin(); pose != poses.rend(); ++pose) {
+        const auto distance_px = [](const PixelRect& box, const PoseTime& to) {  // from its ball
+            const double x_px = std::clamp<double>(to.at.x, box.x0, box.x1) - to.at.x;
+            const double y_px = std::clamp<double>(to.at.y, box.y0, box.y1) - to.at.y;
+            return sim::length(x_px, y_px) - to.label.clear_px;
+        };
+        const auto is_clear = [&](const PixelRect& box) {  // whose time it is
+            return std::all_of(poses.begin(), poses.end(), [&](const PoseTime& other) {
+                return &other == &*pose || distance_px(box, other) > distance_px(box, *pose) + gap_px;
+            });
+        };
         const auto is_free = [&](const PixelRect& box) {
             const PixelRect around{box.x0 - gap_px, box.y0 - gap_px, box.x1 + gap_px, box.y1 + gap_px};
             return !box.empty() && around.intersected({0, 0, width_, height_}) == around &&
@@ -314,7 +335,7 @@ void Overlay::draw_times(std::span<const PoseTime> poses, DrawList& list) {
         for (int i = 0; i < 16; ++i) {  // near, then farther away
             const double clear_px = pose->label.clear_px + gap_px + (i < 8 ? 0.0 : kLine * em_px_);
             const PixelRect box = label_box(pose->label, pose->at, pose->from, kTurns[i % 8], clear_px);
-            if (!is_free(box)) continue;
+            if (!is_free(box) || !is_clear(box)) continue;
             Color color = color_;
             color.a = static_cast<std::uint8_t>(std::lround(255.0 * std::max(kFaintest, pose->opacity)));
             font_.write({box.x0, box.y1, em_px_, color, pose->label.text}, list);

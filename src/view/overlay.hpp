@@ -68,7 +68,7 @@ class Overlay {
     /// Adds the curves of the plot up to a time, and the arrow of the legend.
     void draw_curves(double time_s, DrawList& list) const;
     /// Adds the times of poses, unless the time is switched off: those of later poses first, each where it
-    /// hides no other; one without such a place is left out.
+    /// hides no other and is nearest to its own pose; one without such a place is left out.
     void draw_times(std::span<const PoseTime> poses, DrawList& list);
     /// Adds the stamps of a picture with this camera scale.
     void draw(const Caption& caption, double pixels_per_metre, DrawList& list);

@@ -97,6 +97,7 @@ SceneView::SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& st
                            0.5 * width_px,
                            0.5 * end_width_px,
                            i > 0 && own.merged,
+                           own.label_at,
                            {}});
         bodies_.back().balls = balls_of(i);
         ball_count_ += bodies_.back().balls.size();
@@ -167,16 +168,18 @@ BodyLabel SceneView::label_of(std::size_t b) const {
     const std::size_t pin = first_pin(body);
     const auto shares_pin = [&](const Body& other) {
         const std::size_t its = first_pin(other);
-        return &other != &body && !other.label.empty() && its < other.first_particle + other.particle_count &&
-               system_->x_m[its] == system_->x_m[pin] && system_->y_m[its] == system_->y_m[pin];
+        const auto b_of_other = static_cast<std::size_t>(&other - system_->bodies.data());
+        return &other != &body && !other.label.empty() && bodies_[b_of_other].label_at != LabelAt::kEnd &&
+               its < other.first_particle + other.particle_count && system_->x_m[its] == system_->x_m[pin] &&
+               system_->y_m[its] == system_->y_m[pin];
     };
     const std::vector<std::size_t> ends = free_ends(*system_);
     const auto free = std::lower_bound(ends.begin(), ends.end(), body.first_particle);
     const bool has_free_end = free != ends.end() && *free < end;
-    if (has_free_end &&
-        (pin == end || std::any_of(system_->bodies.begin(), system_->bodies.end(), shares_pin))) {
-        return label_at(*free, body.label);
-    }
+    const bool is_shared = std::any_of(system_->bodies.begin(), system_->bodies.end(), shares_pin);
+    const LabelAt place =
+        bodies_[b].label_at.value_or(pin == end || is_shared ? LabelAt::kEnd : LabelAt::kPin);
+    if (has_free_end && (pin == end || place == LabelAt::kEnd)) return label_at(*free, body.label);
     if (pin == end) return {body.label, body.first_particle, body.first_particle, bodies_[b].radius_px};
     std::vector<Drawn> supports;
     supports_.list(supports);
@@ -189,6 +192,14 @@ std::vector<BodyLabel> SceneView::labels() const {
     std::vector<BodyLabel> labels;
     for (std::size_t b = 0; b < bodies_.size(); ++b)
         if (!system_->bodies[b].label.empty()) labels.push_back(label_of(b));
+    const auto is_above = [this](const BodyLabel& label, const BodyLabel& other) {
+        return label.particle == label.from && other.particle == other.from &&
+               system_->x_m[label.particle] == system_->x_m[other.particle] &&
+               system_->y_m[label.particle] == system_->y_m[other.particle];
+    };
+    for (auto label = labels.begin(); label != labels.end(); ++label)
+        label->row = static_cast<int>(std::count_if(
+            labels.begin(), label, [&](const BodyLabel& other) { return is_above(*label, other); }));
     return labels;
 }
 

@@ -50,6 +50,7 @@ struct BodyLabel {
     /// The label continues the line from this particle; if it is `particle`, the label is above it.
     std::size_t from = 0;
     double clear_px = 0.0;  ///< free distance around the particle
+    int row = 0;            ///< above other labels of the same place
 };
 
 /// Turns states into draw lists. The content and its layers are chosen at construction, positions per frame.
@@ -82,8 +83,9 @@ class SceneView {
     /// The colour of each body; of its first link if links differ.
     [[nodiscard]] std::vector<Color> body_colors() const;
 
-    /// The labels of bodies that have one: above its first pin, unless another label's body is pinned there
-    /// too, at its free end, or above its first particle. Final after set_motion().
+    /// The labels of bodies that have one: where its style says, else above its first pin, unless another
+    /// label's body is pinned there too, at its free end, or above its first particle. Several above one pin
+    /// are in rows. Final after set_motion().
     [[nodiscard]] std::vector<BodyLabel> labels() const;
 
     /// A label of a particle: beyond the end of a rope, otherwise above it.
@@ -120,6 +122,7 @@ class SceneView {
         double radius_px;                ///< of its first link
         double end_radius_px;            ///< and of its last
         bool is_merged;                  ///< drawn in the layer of the body before
+        std::optional<LabelAt> label_at;
         std::vector<Ball> balls;
     };
     /// A state as the camera sees it.

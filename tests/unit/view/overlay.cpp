@@ -282,7 +282,7 @@ TEST(Titles, StandBelowALegendThatLeavesThemNoRoom) {
     const DrawList list = with_legend(kilonewtons(), def, 640, 720);
     EXPECT_EQ(list.texts.at(4).utf8, def.title);
     EXPECT_GT(Font().ink(list.texts[4]).y0, Font().ink(list.texts[1]).y1);
-    EXPECT_EQ(with_legend(kilonewtons(), def, 450, 720).texts.size(), 6U);
+    EXPECT_EQ(with_legend(kilonewtons(), def, 450, 720).texts.size(), 7U);
     // Next to it, several lines as well, of which the last alone is shortened, if any.
     for (int width = 400; width < 1400; width += 50) {
         const Words all = words(with_legend(kilonewtons(), def, width, 500));
@@ -335,6 +335,73 @@ TEST(Overlays, ShowTextsForTheirTime) {
     EXPECT_NEAR(0.5 * (ink.x0 + ink.x1), 320.0, 1.0);
     EXPECT_NEAR(0.5 * (ink.y0 + ink.y1), 36.0, 1.0);
     EXPECT_LT(Font().ink(drawn(def, {2.0, {}, {}}, 640, 360).texts.at(0)).x1, 640);
+}
+
+TEST(Overlays, PlaceTextsInTheWholePictureAndNeverCutThem) {
+    OverlayDef def;
+    def.time = def.scale_bar = false;
+    def.plots = {LivePlot::kEnergy};
+    std::string much = "much";
+    for (int i = 0; i < 40; ++i) much += " more";
+    def.texts = {
+        {"middle", {0.5, 0.5}, 0.0, {}}, {"Ücg", {0.99, 0.01}, 0.0, {}}, {much, {0.5, 0.99}, 0.0, {}}};
+    const DrawList list = drawn(def, {1.0, {}, {}}, 640, 360);
+    ASSERT_EQ(list.texts.size(), 3U);
+    for (const Text& text : list.texts) {
+        const PixelRect ink = Font().ink(text);
+        EXPECT_EQ(ink.intersected({0, 0, 640, 360}), ink) << text.utf8;
+    }
+    const PixelRect middle = Font().ink(list.texts[0]);
+    EXPECT_NEAR(0.5 * (middle.x0 + middle.x1), 320.0, 1.0);
+    EXPECT_TRUE(list.texts[2].utf8.ends_with("more…")) << list.texts[2].utf8;
+}
+
+TEST(Labels, AreShortenedAndDoNotOverprint) {
+    Overlay overlay(bar_alone(), {}, 1000, 500, kFrameS);
+    std::vector<BodyLabel> labels(2);
+    labels[0].text.assign(200, 'x');
+    labels[1].text = "8 kg";
+    labels[1].row = 1;
+    MotionBounds pin;
+    pin.include(0.0, 0.0);
+    std::vector<Drawn> all;
+    overlay.set_labels(labels, std::vector{pin}, all);
+    EXPECT_LE(all[0].left_px + all[0].right_px, 300.0);
+    EXPECT_GT(all[1].up_px, all[0].up_px);
+    DrawList list;
+    list.width = 1000;
+    list.height = 500;
+    Caption caption;
+    caption.labels.assign(2, {PixelPoint{500.0, 250.0}, PixelPoint{500.0, 250.0}});
+    overlay.draw(caption, 100.0, list);
+    EXPECT_TRUE(list.texts.at(0).utf8.ends_with("…"));
+    EXPECT_EQ(list.texts.at(1).utf8, "8 kg");
+    EXPECT_TRUE(Font().ink(list.texts[0]).intersected(Font().ink(list.texts[1])).empty());
+}
+
+TEST(TimesOfPoses, AreNearestToTheirOwnBalls) {
+    std::vector<PoseTime> poses;
+    for (int i = 0; i < 12; ++i) {
+        const PixelPoint at{100.0 + 15.0 * i * i / 4.0, 200.0};
+        poses.push_back({{std::to_string(i), 0, 1, 12.0}, at, {at.x, 100.0}});
+    }
+    DrawList list;
+    list.width = 800;
+    list.height = 400;
+    Overlay({}, {}, 800, 400, kFrameS).draw_times(poses, list);
+    EXPECT_GE(list.texts.size(), 4U);
+    EXPECT_LT(list.texts.size(), 12U);
+    for (const Text& text : list.texts) {
+        const PixelRect ink = Font().ink(text);
+        const auto distance = [&](const PoseTime& pose) {
+            return std::hypot(std::clamp<double>(pose.at.x, ink.x0, ink.x1) - pose.at.x,
+                              std::clamp<double>(pose.at.y, ink.y0, ink.y1) - pose.at.y);
+        };
+        for (const PoseTime& pose : poses) {
+            EXPECT_GT(distance(pose), 12.0) << text.utf8;
+            EXPECT_LE(distance(poses[std::stoul(text.utf8)]), distance(pose)) << text.utf8;
+        }
+    }
 }
 
 TEST(Legends, AreLeftOutIfThereIsNoRoomOrNoScale) {

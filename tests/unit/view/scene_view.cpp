@@ -55,10 +55,11 @@ TEST(SceneView, APlainRopeIsOneLayerOfItsLinks) {
 }
 
 /// The labels of ropes at their start.
-std::vector<BodyLabel> labels_of(const std::vector<RopeDef>& ropes, const std::vector<std::string>& names) {
+std::vector<BodyLabel> labels_of(const std::vector<RopeDef>& ropes, const std::vector<std::string>& names,
+                                 const std::vector<BodyStyleDef>& styles = {}) {
     System system = build_system(ropes);
     for (std::size_t i = 0; i < names.size(); ++i) system.bodies[i].label = names[i];
-    return SceneView(system, {0.0, -9.81}, {}, {}, kWidth, kHeight).labels();
+    return SceneView(system, {0.0, -9.81}, {}, styles, kWidth, kHeight).labels();
 }
 
 TEST(SceneView, ALabelIsAboveItsPinOrAtItsFreeEnd) {
@@ -76,6 +77,19 @@ TEST(SceneView, ALabelIsAboveItsPinOrAtItsFreeEnd) {
     EXPECT_EQ(at_ends[1].particle, 7U);
     EXPECT_EQ(at_ends[1].from, 6U);
     EXPECT_EQ(labels_of({rope, rope}, {"a", ""})[0].particle, 0U);
+    // Where styles say; in rows above one pin.
+    std::vector<BodyStyleDef> styles(2);
+    styles[0].label_at = LabelAt::kEnd;
+    EXPECT_EQ(labels_of({rope}, {"8 kg"}, styles)[0].particle, 3U);
+    const auto apart_at_one_pin = labels_of({rope, rope}, {"a", "b"}, styles);
+    EXPECT_EQ(apart_at_one_pin[1].particle, 4U);
+    EXPECT_EQ(apart_at_one_pin[1].row, 0);
+    styles[0].label_at = styles[1].label_at = LabelAt::kPin;
+    const auto in_rows = labels_of({rope, rope}, {"a", "b"}, styles);
+    EXPECT_EQ(in_rows[0].particle, 0U);
+    EXPECT_EQ(in_rows[0].row, 0);
+    EXPECT_EQ(in_rows[1].particle, 4U);
+    EXPECT_EQ(in_rows[1].row, 1);
     rope.pinned = {};
     EXPECT_EQ(labels_of({rope}, {"free"})[0].particle, 3U);
 }
