@@ -99,7 +99,8 @@ TEST(Strobe, NamesTheTimesOfItsPosesSideBySide) {
         for (std::size_t i = 0; i + 1 < inks.size(); ++i)
             EXPECT_TRUE(inks[i].intersected(inks.back()).empty()) << text.utf8;
     }
-    EXPECT_EQ(words, (std::vector<std::string>{"0.75 s", "0.50 s", "0.25 s", "0.01 s", "0.00 s"}));
+    // The balls of the first two cover each other.
+    EXPECT_EQ(words, (std::vector<std::string>{"0.75 s", "0.50 s", "0.25 s"}));
     EXPECT_EQ(FilmRenderer::list_poses(film, {times_s.data(), 1}).texts[0].utf8, "t = 0.00 s");
     Film without(pendulum("", "[overlay]\ntime = false\nscale_bar = false\n"));
     EXPECT_TRUE(FilmRenderer::list_poses(without, times_s).texts.empty());
