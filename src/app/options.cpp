@@ -41,6 +41,18 @@ Scene load_with(const std::vector<Setting>& settings, const std::vector<Setting>
     }
 }
 
+/// Warns of texts that no frame shows. They are no error: a shorter film may be a preview.
+void warn_of_unseen_texts(const Console& console, const Scene& scene) {
+    for (std::size_t i = 0; i < scene.overlay.texts.size(); ++i) {
+        const double from_s = scene.overlay.texts[i].from_s;
+        if (from_s < scene.world.duration_s) continue;
+        console.warning(fmt::format(
+            "{}: overlay.texts[{}].from: {} s is not before the end of the film at {} s, so that no "
+            "frame shows the text; give an earlier time, or a longer world.duration",
+            scene.source, i, from_s, scene.world.duration_s));
+    }
+}
+
 /// So many pictures are a video.
 constexpr std::int64_t kMaxTimes = 100'000;
 
@@ -192,6 +204,7 @@ Scene SceneOptions::load(const Console& console) const {
     Scene scene = is_from() ? load_from(provenance(console)) : parse({}, {}, {});
     if (is_from()) check_size_from_file(scene.video);
     if (const std::string notice = cost_notice(scene); !notice.empty()) console.info(notice);
+    warn_of_unseen_texts(console, scene);
     return scene;
 }
 

@@ -97,6 +97,22 @@ std::string problem_of(const NewPicture& one, const std::string& bytes, const Ca
     return is_known ? "" : fmt::format("'{}' has changed since, or is another one", picture.reference);
 }
 
+/// Why no picture was accepted, although none was refused. `left_out`: those that the folders have.
+std::string nothing_text(const SuiteDef& def, std::vector<std::string> left_out) {
+    const std::string folders = fmt::format("{}", fmt::join(def.accepted, "', '"));
+    if (left_out.empty())
+        return fmt::format(
+            "nothing to accept: '{}' has no picture, as after a corda golden --new without failures",
+            folders);
+    constexpr std::size_t kMaxTold = 10;
+    const bool has_more = left_out.size() > kMaxTold;
+    if (has_more) left_out.resize(kMaxTold);
+    return fmt::format(
+        "nothing to accept: '{}' has other pictures than those of --only or --shard; leave that out, or name "
+        "some of {}{}",
+        folders, fmt::join(left_out, ", "), has_more ? ", ..." : "");
+}
+
 }  // namespace
 
 void publish(const std::string& folder, const Files& files, const std::vector<std::string>& removed) {
@@ -154,11 +170,16 @@ SuiteResult accept(const SuiteDef& def) {
     Files files;
     std::map<std::string, std::string> hashes;
     std::vector<std::string> problems;
+    std::vector<std::string> left_out;  // by --only or --shard
     for (const std::string& folder : def.accepted) {
         for (NewPicture& one : new_pictures_in(folder)) {
             Checked& picture = one.picture;
             const auto [scene, asked] = known[picture.name];
-            if (!is_there(picture.drawn_path) || (asked != nullptr && !asked->selected)) continue;
+            if (!is_there(picture.drawn_path)) continue;
+            if (asked != nullptr && !asked->selected) {
+                left_out.push_back(picture.name);
+                continue;
+            }
             picture.reference = join(def.folder, picture.name);
             picture.time_s = asked == nullptr ? 0.0 : asked->time_s;
             std::string bytes = file_bytes(picture.drawn_path);
@@ -175,6 +196,7 @@ SuiteResult accept(const SuiteDef& def) {
             result.pictures.push_back(picture);
         }
     }
+    if (result.pictures.empty() && problems.empty()) result.notes.push_back(nothing_text(def, left_out));
     if (!problems.empty())
         throw Error(ExitCode::kUsage,
                     fmt::format("nothing is accepted:\n  {}\nrun corda golden --new again, give the "

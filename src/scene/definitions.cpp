@@ -59,6 +59,9 @@ std::vector<DefProblem> problems_of(const StyleDef& style, const std::vector<Rop
     for (const NetDef& net : nets) most = std::max(most, net.points_m.size());
     const auto count = static_cast<std::int64_t>(most);
     std::vector<DefProblem> problems;
+    if (!style.trail_of.empty() && style.trail_s == 0.0)
+        problems.push_back(
+            {"trail_of", {}, "no trail without a length; give style.trail_s, or remove trail_of"});
     for (std::size_t i = 0; i < style.trail_of.size(); ++i) {
         const std::int64_t particle = style.trail_of[i];
         if (particle < -count || particle >= count)

@@ -101,6 +101,8 @@ TEST_F(GoldenReview, AcceptsOnePictureAndRejectsAnother) {
     EXPECT_EQ(references()[0], before[0]);
     EXPECT_NE(references()[1], before[1]);
     fs::remove(fresh(kStart));
+    EXPECT_THAT(run({"--accept", fresh(), "--only", kStart}).err,
+                AllOf(HasSubstr("nothing to accept: '"), HasSubstr("name some of "), HasSubstr(kEnd)));
     EXPECT_EQ(run({"--accept", fresh()}).exit_code, 0);
     EXPECT_EQ(references()[0], before[0]);
     EXPECT_NE(references()[2], before[2]);

@@ -32,6 +32,18 @@ fps = 20
     std::string video_ = folder_.file("out.mp4");
 };
 
+TEST_F(Messages, WarnOfTextsThatNoFrameShows) {
+    const auto told = [&](const std::string& from) {
+        return run_corda({"plan", scene_, "--set", "overlay.texts=[{text='a'},{text='b',from=" + from + "}]"})
+            .err;
+    };
+    EXPECT_THAT(told("1.0"),
+                HasSubstr("scene.toml: overlay.texts[1].from: 1 s is not before the end of the film "
+                          "at 1 s, so that no frame shows the text; give an earlier time, or a "
+                          "longer world.duration"));
+    EXPECT_THAT(told("0.9"), Not(HasSubstr("overlay.texts")));
+}
+
 TEST_F(Messages, NameTheValuesOfAnOption) {
     for (const auto& [command, message] :
          {std::pair(std::vector<std::string>{"simulate", scene_, "--decimal", "komma"},
