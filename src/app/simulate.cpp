@@ -40,18 +40,30 @@ struct SimulateOptions {
     bool dry_run = false;
 };
 
-/// The names of the columns, with units as the files of `report` have them, after the label of a body that
-/// has one. The time and the positions, in s and m, have the names that scripts know.
-std::string csv_header(const System& system, const Columns& columns, CsvStyle style) {
+/// How the columns of each body begin: with the label that it, or the body with which it is merged, has.
+std::vector<std::string> column_prefixes(const Film& film) {
+    System named = film.system();
+    const std::vector<BodyStyleDef>& styles = film.scene().body_styles;
+    for (std::size_t b = 1; b < std::min(styles.size(), named.bodies.size()); ++b)
+        if (styles[b].merged && styles[b].label.empty()) named.bodies[b].label = named.bodies[b - 1].label;
+    std::vector<std::string> prefixes = body_keys(named);
+    for (std::size_t b = 0; b < prefixes.size(); ++b)
+        prefixes[b] = named.bodies[b].label.empty() ? "" : prefixes[b] + "_";
+    return prefixes;
+}
+
+/// The names of the columns, with units as the files of `report` have them. The time and the positions, in s
+/// and m, have the names that scripts know.
+std::string csv_header(const Film& film, const Columns& columns, CsvStyle style) {
     CsvLine line(style);
     line.add("t");
-    const std::vector<std::string> keys = body_keys(system);
+    const System& system = film.system();
+    const std::vector<std::string> prefixes = column_prefixes(film);
     std::vector<std::string> labels;  // of particles
     std::vector<std::string> of_links;
     for (std::size_t b = 0; b < system.bodies.size(); ++b) {
-        const std::string label = system.bodies[b].label.empty() ? "" : keys[b] + "_";
-        labels.resize(labels.size() + system.bodies[b].particle_count, label);
-        of_links.resize(of_links.size() + system.bodies[b].link_count, label);
+        labels.resize(labels.size() + system.bodies[b].particle_count, prefixes[b]);
+        of_links.resize(of_links.size() + system.bodies[b].link_count, prefixes[b]);
     }
     for (std::size_t i = 0; i < labels.size(); ++i)
         for (const char axis : {'x', 'y'}) line.add(fmt::format("{}{}{}", labels[i], axis, i));
@@ -59,7 +71,8 @@ std::string csv_header(const System& system, const Columns& columns, CsvStyle st
         for (const char axis : {'x', 'y'}) line.add(fmt::format("{}v{}{}_m_s", labels[i], axis, i));
     for (std::size_t k = 0; columns.tensions && k < of_links.size(); ++k)
         line.add(fmt::format("{}tension{}_n", of_links[k], k));
-    if (columns.energy) line.add("energy_change_j");
+    if (columns.energy)
+        for (const char* const name : {"energy_change_j", "kinetic_j", "potential_j"}) line.add(name);
     if (columns.diagnostics)
         for (const char* const name : {"energy_error", "strain", "pin_force_n", "largest_tension_n"})
             line.add(name);
@@ -83,13 +96,14 @@ nlohmann::json bodies_json(const System& system) {
 }
 
 /// The columns of each body, for people.
-std::string columns_text(const System& system) {
+std::string columns_text(const Film& film) {
+    const System& system = film.system();
+    const std::vector<std::string> prefixes = column_prefixes(film);
     std::string text;
-    for (const nlohmann::json& body : bodies_json(system)) {
-        const auto first = body["first_particle"].get<std::size_t>();
-        text += fmt::format("{}{}: x{} .. y{}", text.empty() ? "columns of " : "; ",
-                            body["body"].get<std::string>(), first,
-                            first + body["particles"].get<std::size_t>() - 1);
+    for (std::size_t b = 0; b < prefixes.size(); ++b) {
+        const std::size_t first = system.bodies[b].first_particle;
+        text += fmt::format("{}{}: {}x{} .. {}y{}", text.empty() ? "columns of " : "; ", body_name(system, b),
+                            prefixes[b], first, prefixes[b], first + system.bodies[b].particle_count - 1);
     }
     return text;
 }
@@ -103,7 +117,7 @@ void add_figures(const Figures& figures, CsvLine& line) {
     line.add(figures.loads ? figures.loads->largest_tension_n : none);
 }
 
-void add_row(const Film& film, const State& state, const Columns& columns, CsvLine& line) {
+void add_row(Film& film, const State& state, const Columns& columns, CsvLine& line) {
     const System& system = film.system();
     const Vec2 origin_m = system.origin_m;
     line.add(state.time_s);
@@ -120,7 +134,11 @@ void add_row(const Film& film, const State& state, const Columns& columns, CsvLi
         for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k)
             line.add(state.tension_n[k]);
     }
-    if (columns.energy) line.add(film.figures().energy_change_j);
+    if (columns.energy) {
+        const Energy energy = film.energy();
+        for (const double value_j : {film.figures().energy_change_j, energy.kinetic_j, energy.potential_j()})
+            line.add(value_j);
+    }
     if (columns.diagnostics) add_figures(film.figures(), line);
 }
 
@@ -150,7 +168,7 @@ std::string cost_text(const Film& film) {
 /// Writes the states of all frame times as CSV; without a file, only simulates.
 void write_states(const Console& console, Film& film, const SimulateOptions& options, OutputFile* csv) {
     Progress progress(console, "simulate", film.last_frame() + 1);
-    if (csv != nullptr) csv->write(csv_header(film.system(), options.columns, options.style));
+    if (csv != nullptr) csv->write(csv_header(film, options.columns, options.style));
     CsvLine line(options.style);
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
         check_cancelled();
@@ -230,7 +248,7 @@ void write_output(const Console& console, Film& film, const SimulateOptions& opt
         file = std::make_unique<OutputFile>(options.output, OutputOptions{.force = options.force});
         constexpr std::size_t kMaxToldBodies = 20;
         const std::size_t bodies = film.system().bodies.size();
-        if (bodies > 1 && bodies <= kMaxToldBodies) console.info(columns_text(film.system()));
+        if (bodies > 1 && bodies <= kMaxToldBodies) console.info(columns_text(film));
     }
     try {
         if (options.columns.tensions) warn_of_tensions(console, film);
@@ -272,7 +290,7 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     def.on_progress = [&](std::int64_t done, std::int64_t all) {
         return !on_progress || on_progress(done, all);
     };
-    def.readings = {.velocities = options.columns.velocities || (to_npz && options.columns.energy),
+    def.readings = {.velocities = options.columns.velocities || options.columns.energy,
                     .tensions = options.columns.tensions,
                     .unknown_tensions = options.columns.tensions};
     Film film(scene, def);
@@ -304,9 +322,9 @@ void add_simulate(CLI::App& app, Action& action) {
     command.add_option(
         "-o,--output", options.output,
         "CSV or .npz file, or - for CSV on standard output; none: figures only. The first line "
-        "of CSV names the columns: t in s, x0, y0, ... in m, after the label of a rope or net that has one; "
-        "the arrays of .npz are times, "
-        "positions, ...");
+        "of CSV names the columns: t in s, x0, y0, ... in m, after the label of a rope or net that has one. "
+        "The arrays of .npz are times in s, positions in m and, as asked for, velocities in m/s, tensions in "
+        "N and energy in J: kinetic, potential and their sum");
     options.scene.add_timing(command, "rows per second");
     command.add_flag("--velocity", options.columns.velocities,
                      "add the velocity of every particle: vx0_m_s, vy0_m_s, ...");
@@ -314,8 +332,10 @@ void add_simulate(CLI::App& app, Action& action) {
         "--tension", options.columns.tensions,
         "add the tension of every link, positive if it pulls: tension0_n, ...; empty if the method does "
         "not know it");
-    command.add_flag("--energy", options.columns.energy,
-                     "add the change of kinetic and potential energy since the start: energy_change_j");
+    command.add_flag(
+        "--energy", options.columns.energy,
+        "add the change of the energy since the start, and its parts: energy_change_j, kinetic_j, "
+        "potential_j, in which the weight has 0 J at the start");
     command.add_flag("--diagnostics", options.columns.diagnostics,
                      "add energy error, strain, pin force and tension to every row");
     command

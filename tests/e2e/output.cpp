@@ -128,6 +128,12 @@ TEST_F(Output, ColumnsHaveTheLabelsOfTheirBodies) {
                     "8_kg_tension0_n,tension1_n,8_kg_2_tension2_n,\"a,\"\"b\"\"_tension3_n\"\n"));
     EXPECT_THAT(run_corda({"simulate", scene, "-o", "-", "--velocity", "--decimal", "comma"}).out,
                 HasSubstr(";8_kg_2_vy5_m_s;"));
+    const std::string copies =
+        folder_.write("copies.toml", "schema = 1\n[world]\nduration = 0.1\n" + rope +
+                                         "label = \"P\"\ncopies = { count = 2, angle_deg = 1 }\n" + rope);
+    const auto named = run_corda({"simulate", copies, "-o", "-"});
+    EXPECT_THAT(named.out, testing::StartsWith("t,P_x0,P_y0,P_x1,P_y1,P_2_x2,P_2_y2,P_2_x3,P_2_y3,x4,"));
+    EXPECT_THAT(named.err, HasSubstr("P: P_x0 .. P_y1; rope 1: P_2_x2 .. P_2_y3; rope 2: x4 .. y5"));
 }
 
 TEST_F(Output, SimulateAddsVelocitiesTensionsAndEnergy) {
@@ -139,24 +145,28 @@ TEST_F(Output, SimulateAddsVelocitiesTensionsAndEnergy) {
         run_corda({"simulate", pendulum, "-o", "-", "--velocity", "--tension", "--energy"}).out);
     std::string line;
     std::getline(lines, line);
-    EXPECT_EQ(line, "t,x0,y0,x1,y1,vx0_m_s,vy0_m_s,vx1_m_s,vy1_m_s,tension0_n,energy_change_j");
+    EXPECT_EQ(line,
+              "t,x0,y0,x1,y1,vx0_m_s,vy0_m_s,vx1_m_s,vy1_m_s,tension0_n,energy_change_j,"
+              "kinetic_j,potential_j");
     int rows = 0;
     for (; std::getline(lines, line); ++rows) {
         const std::vector<double> cells = numbers_of(line);
-        ASSERT_EQ(cells.size(), 11U);
+        ASSERT_EQ(cells.size(), 13U);
         // v^2 = 2 g (h0 - h) and T = m (g cos + v^2 / L), with errors of at most 1e-10.
         const double height_m = cells[4];
         const double speed_square = cells[7] * cells[7] + cells[8] * cells[8];
         EXPECT_NEAR(speed_square, 2.0 * 9.81 * (-1.0 - height_m), 1e-9);
         EXPECT_NEAR(cells[9], 3.0 * (9.81 * -height_m + speed_square) / 2.0, 1e-8);
         EXPECT_NEAR(cells[10], 0.0, 1e-9);
+        EXPECT_NEAR(cells[11], 0.5 * 3.0 * speed_square, 1e-12);
+        EXPECT_NEAR(cells[11] + cells[12], 0.0, 1e-8);
         EXPECT_EQ(cells[5], 0.0);  // that of the pin
     }
     EXPECT_EQ(rows, 61);
     // Drag dissipates the energy that the column shows.
     const std::string dragged =
         run_corda({"simulate", pendulum, "-o", "-", "--energy", "--set", "world.drag=1.0"}).out;
-    EXPECT_LT(numbers_of(dragged.substr(dragged.rfind('\n', dragged.size() - 2) + 1)).back(), -1.0);
+    EXPECT_LT(numbers_of(dragged.substr(dragged.rfind('\n', dragged.size() - 2) + 1))[5], -1.0);
 }
 
 TEST_F(Output, SimulateWritesTheTensionsThatAMethodKnowsAndWarnsOfTheRest) {
