@@ -124,20 +124,29 @@ std::ptrdiff_t turning_count(const System& system, const MotionSummary& motion) 
     });
 }
 
-/// "The period is 2.006 s, the mean of 9 from 2.005 to 2.007 s; ..."; empty if nothing swings twice.
+/// "The period is 2.006 s, the mean of 9 between 2.005 and 2.007 s; that of ... is 2.006 s."
 std::string period_text(const Scene& scene, const MotionSummary& motion) {
     const std::vector<double>& all_s = motion.periods_s;
-    if (all_s.empty()) return {};
+    if (all_s.empty())
+        return fmt::format(
+            "No period is measured: the film of {:g} s has no whole one between passes below "
+            "the pin.",
+            scene.world.duration_s);
     const auto [least, most] = std::minmax_element(all_s.begin(), all_s.end());
     const double mean_s =
         std::accumulate(all_s.begin(), all_s.end(), 0.0) / static_cast<double>(all_s.size());
-    std::string text =
-        fmt::format("The period{} is {:.5g} s", motion.bodies.size() > 1 ? " of the first body" : "", mean_s);
+    const std::string least_text = fmt::format("{:.5g}", *least);
+    const std::string most_text = fmt::format("{:.5g}", *most);
+    const char* const whose = motion.bodies.size() > 1 ? " of the first body" : "";
+    std::string text = fmt::format("The period{} is {:.5g} s", whose, mean_s);
     if (all_s.size() > 1)
-        text += fmt::format(", the mean of {} between {:.5g} and {:.5g} s", all_s.size(), *least, *most);
-    if (const auto theory = period_theory(scene, motion.angle_max_deg.value_or(180.0)))
-        text += fmt::format("; that of {} is {:.5g} s", theory->model, theory->period_s);
-    return text + ".";
+        text = least_text == most_text
+                   ? fmt::format("The film has {} periods{} of {} s each", all_s.size(), whose, most_text)
+                   : fmt::format("{}, the mean of {} between {} and {} s", text, all_s.size(), least_text,
+                                 most_text);
+    const auto theory = period_theory(scene, motion.angle_max_deg.value_or(180.0));
+    return theory ? fmt::format("{}; that of {} is {:.5g} s.", text, theory->model, theory->period_s)
+                  : text + "; no theory in this report has a period for such a scene.";
 }
 
 /// "link 3 of rope 0 (between its particles 3 and 4)"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <variant>
 #include <vector>
 
@@ -32,6 +33,16 @@ std::optional<double> link_length_m(const RopeDef& rope) {
     return length_m(0);
 }
 
+/// Whether a rope is straight and its particles have at most 1 % of the payload's mass, which then shorten
+/// the period of a point pendulum by a twelfth of that: less than 0.1 %.
+bool has_heavy_end(const RopeDef& rope, double length_m) {
+    constexpr double kSmallShare = 0.01;
+    const Vec2 span = rope.points_m.back() - rope.points_m.front();
+    const bool is_straight = std::abs(std::hypot(span.x, span.y) - length_m) <= 1e-9 * length_m;
+    return is_straight &&
+           std::accumulate(rope.mass_kg.begin(), rope.mass_kg.end(), 0.0) <= kSmallShare * rope.payload_kg;
+}
+
 /// The acceleration downwards that a rope feels; 0 or less: none that theory knows.
 double gravity_m_s2(const RopeDef& rope, const Scene& scene) {
     Vec2 gravity = scene.world.gravity_m_s2;
@@ -57,6 +68,9 @@ std::optional<PeriodTheory> period_theory(const Scene& scene, double angle_deg) 
     const int links = static_cast<int>(rope.points_m.size()) - 1;
     if (links == 1)
         return {{pendulum_s(std::sqrt(gravity / *length_m)), "a point pendulum of this amplitude"}};
+    if (has_heavy_end(rope, links * *length_m))
+        return {{pendulum_s(std::sqrt(gravity / (links * *length_m))),
+                 "a point pendulum of this amplitude, with all mass at the end of the rope,"}};
     const bool has_equal_masses =
         rope.payload_kg == 0.0 && std::all_of(rope.mass_kg.begin(), rope.mass_kg.end(), [&](double mass_kg) {
             return mass_kg == rope.mass_kg.front();

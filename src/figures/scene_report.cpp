@@ -69,13 +69,24 @@ std::vector<report::Chapter> list_chapters(Film& film, const MotionSummary& moti
 }
 
 /// Translates headings, titles of figures and of their axes, and names of curves that are not those of
-/// bodies.
-void translate(Language language, std::vector<report::Chapter>& chapters) {
+/// bodies. Sentences get the decimal sign.
+void translate(Language language, report::Report& page) {
     const auto into = [&](std::string& text) { text = view::translated(text, language); };
-    for (report::Chapter& chapter : chapters) {
+    const auto localize = [&](std::string& text) { text = view::localized_sentence(text, language); };
+    into(page.setting_title);
+    for (auto& [name, value] : page.setting) localize(value);
+    for (report::Chapter& chapter : page.chapters) {
         into(chapter.title);
+        localize(chapter.summary);
+        for (std::string& paragraph : chapter.paragraphs) localize(paragraph);
+        for (report::Table& table : chapter.tables) into(table.title);
+        for (report::Picture& picture : chapter.pictures) {
+            localize(picture.title);
+            localize(picture.caption);
+        }
         for (report::Plot& plot : chapter.plots) {
             plot.language = language;
+            localize(plot.caption);
             for (std::string* const text : {&plot.title, &plot.x_title, &plot.y_title}) into(*text);
             for (report::Series& series : plot.series)
                 if (plot.id == "energy") into(series.name);
@@ -93,10 +104,10 @@ report::Report page_of(const Film& film, std::vector<report::Chapter> chapters) 
     page.setting = {{"Bodies", system_text(film.system())},
                     {"Method", plan_text(film.system(), film.plan())},
                     {"Duration", fmt::format("{:g} s", scene.world.duration_s)},
-                    {"Rows", fmt::format("{} per second", scene.video.scene_rate().rational().text())},
-                    {"Corda", std::string(version())}};
-    translate(scene.overlay.language, chapters);
+                    {"Rows", fmt::format("{} per second", scene.video.scene_rate().rational().text())}};
     page.chapters = std::move(chapters);
+    translate(scene.overlay.language, page);
+    page.setting.emplace_back("Corda", version());
     return page;
 }
 

@@ -132,6 +132,7 @@ struct Report {
     /// give the same files.
     std::vector<std::pair<std::string, std::string>> setting;
     std::vector<Chapter> chapters;
+    std::string setting_title = "Setting";
     /// Widths of its figures in print, in mm, increasing, at least one: each has the files
     /// `<id>_<width>mm.svg`, .png (at kPrintPpi) and .pdf per width, and the page shows the widest, of small
     /// pictures the narrowest. A single width is not in the names.

@@ -113,9 +113,10 @@ class Figures {
 
 std::string setting_html(const Report& report) {
     if (report.setting.empty()) return {};
-    std::string text =
+    std::string text = fmt::format(
         "<div class=\"scroll\">\n<table class=\"setting\" "
-        "id=\"setting\">\n<caption>Setting</caption>\n<tbody>\n";
+        "id=\"setting\">\n<caption>{}</caption>\n<tbody>\n",
+        markup_text(report.setting_title));
     for (const auto& [name, value] : report.setting) {
         text += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", markup_text(name),
                             markup_text(value));

@@ -31,6 +31,8 @@ largest tension|größte Zugkraft|maior tensão|tensión máxima|tension maximal
 largest strain|größte Dehnung|maior deformação|deformación máxima|déformation maximale
 distance along the rope|Weg entlang des Seils|distância ao longo da corda|distancia a lo largo de la cuerda|distance le long de la corde
 Report of {}|Bericht zu {}|Relatório de {}|Informe de {}|Rapport de {}
+Setting|Angaben|Dados|Datos|Données
+Largest figures, at frame times|Größte Werte, zu den Zeiten der Bilder|Maiores valores, nos tempos dos quadros|Valores máximos, en los tiempos de los fotogramas|Valeurs maximales, aux temps des images
 Motion|Bewegung|Movimento|Movimiento|Mouvement
 Path|Bahn|Trajetória|Trayectoria|Trajectoire
 Path of the tip|Bahn des Endes|Trajetória da ponta|Trayectoria del extremo|Trajectoire de l’extrémité
@@ -66,6 +68,13 @@ std::string translated(std::string_view english, Language language) {
 std::string localized(std::string numbers, Language language) {
     std::replace(numbers.begin(), numbers.end(), '.', decimal_sign(language));
     return numbers;
+}
+
+std::string localized_sentence(std::string text, Language language) {
+    const auto is_digit = [&](std::size_t i) { return text[i] >= '0' && text[i] <= '9'; };
+    for (std::size_t i = 1; i + 1 < text.size(); ++i)
+        if (text[i] == '.' && is_digit(i - 1) && is_digit(i + 1)) text[i] = decimal_sign(language);
+    return text;
 }
 
 std::string translated_name(const System& system, std::size_t body, Language language) {

@@ -64,8 +64,13 @@ TEST(Chapters, CompareThePeriodWithTheory) {
     for (const double its_s : scene.motion.periods_s) EXPECT_NEAR(its_s, period_s, 1e-6);
     EXPECT_EQ(
         angle.summary,
-        "The period is 2.1529 s, the mean of 9 between 2.1529 and 2.1529 s; that of a point pendulum of this "
-        "amplitude is 2.1529 s.");
+        "The film has 9 periods of 2.1529 s each; that of a point pendulum of this amplitude is 2.1529 s.");
+    ReadScene brief(pendulum_toml("duration = 0.5"));
+    EXPECT_EQ(angle_chapter(brief.film, brief.motion).summary,
+              "No period is measured: the film of 0.5 s has no whole one between passes below the pin.");
+    ReadScene dragged(pendulum_toml("duration = 4.0\ndrag = 0.5"));
+    EXPECT_THAT(angle_chapter(dragged.film, dragged.motion).summary,
+                testing::EndsWith("no theory in this report has a period for such a scene."));
 }
 
 /// R2, R3 and R4 of section 4 of src/sim/README.md.
@@ -80,6 +85,8 @@ TEST(PeriodTheory, IsOfPendulumRodAndRope) {
     EXPECT_NEAR(period_s(rope, 5.0), 2.0 * std::numbers::pi / 3.6766206576178, 1e-12);
     EXPECT_NEAR(period_s(rope + "[solver]\nmethod = \"relaxation\"\nforce = [0.0, -9.81]\n", 90.0),
                 1.981078706687632, 1e-12);
+    EXPECT_NEAR(period_s(rope + "mass = 1e-4\npayload = 1.0\n", 90.0), 1.1803405990160962 * 2.006066680710647,
+                1e-14);
     for (const char* const other :
          {"payload = 1.0\n", "compliance = 1e-3\n", "pinned = [0, 10]\n", "mass = [1,1,1,1,1,1,1,1,1,1,2]\n",
           "[world]\ndrag = 0.1\n", "[world]\ngravity = [1.0, -9.0]\n", "[world]\ngravity = 0.0\n"})

@@ -23,14 +23,33 @@ TEST(Words, KeepUnitsAndIndices) {
     EXPECT_EQ(translated("tension (kN)", Language::kEnglish), "tension (kN)");
     EXPECT_EQ(localized("3.1·10⁻¹²", Language::kFrench), "3,1·10⁻¹²");
     EXPECT_EQ(localized("0.5 m", Language::kEnglish), "0.5 m");
+    EXPECT_EQ(localized_sentence("At 0.5 to 12.25 s, frames 0 .. 2.", Language::kGerman),
+              "At 0,5 to 12,25 s, frames 0 .. 2.");
 }
 
 TEST(Words, AreTextsThatTheFontHasWithTheSamePlaces) {
     Font font;
-    for (const char* const english :
-         {"energy", "kinetic", "potential", "total", "energy error", "angle", "angular velocity",
-          "distance of the tips", "distance", "position", "x of {}", "rope", "net", "speed", "tension",
-          "strain", "error below {} px", "Report of {}", "Phase portrait"}) {
+    for (const char* const english : {"energy",
+                                      "kinetic",
+                                      "potential",
+                                      "total",
+                                      "energy error",
+                                      "angle",
+                                      "angular velocity",
+                                      "distance of the tips",
+                                      "distance",
+                                      "position",
+                                      "x of {}",
+                                      "rope",
+                                      "net",
+                                      "speed",
+                                      "tension",
+                                      "strain",
+                                      "error below {} px",
+                                      "Report of {}",
+                                      "Phase portrait",
+                                      "Setting",
+                                      "Largest figures, at frame times"}) {
         const auto places = [](const std::string& text) { return text.find("{}") != std::string::npos; };
         for (const Language language : kOthers) {
             const std::string text = translated(english, language);
