@@ -347,7 +347,9 @@ ExitCode write_stills(const Console& console, FigureOptions options) {
 ExitCode write_strobe(const Console& console, FigureOptions options) {
     options.take_origin(console, "strobe");
     const Scene scene = options.load(console);
-    const std::vector<RequestedTime> times = options.times.list(scene);
+    std::vector<RequestedTime> times = options.times.list(scene);
+    const auto is_same = [](const RequestedTime& a, const RequestedTime& b) { return a.time_s == b.time_s; };
+    times.erase(std::unique(times.begin(), times.end(), is_same), times.end());  // one pose, one label
     FigureDef def;
     for (const RequestedTime& time : times) def.times_s.push_back(time.time_s);
     return options.write_one(console, scene, times, def);

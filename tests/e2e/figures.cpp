@@ -286,6 +286,11 @@ TEST_F(Figures, PrintTheSameReportAsStills) {
     EXPECT_EQ(report["outputs"][0]["path"], folder_.file("a.svg"));
     EXPECT_EQ(report["outputs"][0]["times_s"].size(), 11U);
     EXPECT_EQ(report["simulation_passes"], 1);
+    const std::string once = folder_.file("once.png");
+    const std::string twice = folder_.file("twice.png");
+    ASSERT_EQ(run_corda({"strobe", scene_, "--at", "0,1", "-o", once}).exit_code, 0);
+    ASSERT_EQ(run_corda({"strobe", scene_, "--at", "1,0,1", "-o", twice}).exit_code, 0);
+    EXPECT_EQ(test::read_file(once), test::read_file(twice));  // one pose, one label
     const auto words = run_corda({"sheet", scene_, "--at", "0,1", "-o", folder_.file("b.svg")});
     EXPECT_EQ(words.out, folder_.file("b.svg") + "\n");
     const auto dry = run_corda({"sheet", scene_, "--at", "0,1", "-o", folder_.file("c.svg"), "--dry-run"});
