@@ -89,6 +89,7 @@ std::string text_about(const CLI::App& app, const std::string& topic) {
     if (topic == kSceneTopic) return scene::keys_text();
     if (topic == kManualTopic) return manual_page(app) + "\n";
     if (const CLI::App* const command = find_command(app, topic)) return help_of(*command);
+    if (std::string text = scene::keys_text(topic); !text.empty()) return text;
     std::vector<std::string> topics = command_names(app);
     topics.emplace_back(kSceneTopic);
     topics.emplace_back(kManualTopic);
@@ -101,7 +102,10 @@ std::string text_about(const CLI::App& app, const std::string& topic) {
 void add_help(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("help", "explain a command, or the keys of a scene file");
     const auto topic = std::make_shared<std::string>();
-    command->add_option("TOPIC", *topic, "a command; scene: the keys of a scene file; man: the manual page");
+    command->add_option(
+        "TOPIC", *topic,
+        "a command; scene: the keys of a scene file; one of its tables, such as style or overlay.texts; "
+        "man: the manual page");
     command->callback([&app, &action, topic] {
         action = [&app, topic](const Console& console) {
             const std::string text = text_about(app, *topic);

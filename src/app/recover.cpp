@@ -69,7 +69,7 @@ ExitCode join(const Console& console, const JoinOptions& options) {
     std::vector<Provenance> origins;
     for (const std::string& part : options.parts) {
         check_output(options.output, part, options.force);
-        origins.push_back(read_provenance(part));
+        origins.push_back(read_provenance(part, OriginUse::kJoin));
     }
     const Provenance made = joined(origins);
     const nlohmann::json comment{{"corda", version()},

@@ -107,9 +107,12 @@ int columns_of(const Console& console, const RenderOptions& options) {
     if (is_read && columns > 0 && rows > 0 &&
         static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) == scenes)
         return columns;
+    const std::string count = counted(std::ssize(options.others) + 1, "scene");
     throw Error(ExitCode::kUsage,
-                fmt::format("--panels {}: is no grid COLUMNSxROWS of {}; give e.g. --panels {}x1",
-                            options.panels, counted(std::ssize(options.others) + 1, "scene"), scenes));
+                options.panels.empty()
+                    ? fmt::format("{} need a grid COLUMNSxROWS; give e.g. --panels {}x1", count, scenes)
+                    : fmt::format("--panels {}: is no grid COLUMNSxROWS of {}; give e.g. --panels {}x1",
+                                  options.panels, count, scenes));
 }
 
 /// The scenes, in the sizes of their panels.

@@ -131,7 +131,8 @@ std::optional<std::string_view> nearest(std::string_view word, std::span<const s
     std::size_t smallest = std::numeric_limits<std::size_t>::max();
     for (const std::string_view candidate : candidates) {
         const std::size_t distance = edit_distance(word, candidate);
-        const std::size_t close = std::max<std::size_t>(1, std::min(word.size(), candidate.size()) / 3);
+        const std::size_t least = std::max(word.size(), candidate.size()) < 3 ? 0 : 1;
+        const std::size_t close = std::max(least, std::min(word.size(), candidate.size()) / 3);
         if (distance < smallest && (distance <= close || is_prefix(word, candidate))) {
             smallest = distance;
             closest = candidate;

@@ -89,6 +89,16 @@ int best_columns(int width_px, int height_px, int count) {
     return best;
 }
 
+/// The most cells that have room, in this many columns or, with 0, in any number of them.
+int most_cells(int width_px, int height_px, int columns) {
+    int most = 0;
+    const int last = columns == 0 ? width_px / kMinCellPx : columns;
+    for (int c = std::max(columns, 1); c <= last; ++c)
+        for (int rows = 1; Sheet(width_px, height_px, c, c * rows).has_room(); ++rows)
+            most = std::max(most, c * rows);
+    return most;
+}
+
 Sheet sheet_of(const FigureDef& def) {
     return {def.width_px, def.height_px, def.columns, static_cast<int>(def.times_s.size())};
 }
@@ -229,15 +239,18 @@ std::string vector_bytes(const std::string& ending, Film& film, const FigureDef&
 FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns) {
     VideoDef& video = scene.video;
     const int count = static_cast<int>(std::max<std::size_t>(times_s.size(), 1));
+    const int asked = columns;
     if (columns == 0) columns = best_columns(video.width_px, video.height_px, count);
     FigureDef def{std::move(times_s), columns, video.width_px, video.height_px};
     const Sheet sheet(video.width_px, video.height_px, std::max(columns, 1), count);
     if (columns < 1 || !sheet.has_room()) {
+        const int most = columns < 1 ? 0 : most_cells(video.width_px, video.height_px, asked);
         throw Error(
             ExitCode::kUsage,
-            fmt::format("{} cells in {} have no room in a contact sheet of {}x{} pixels (each "
-                        "takes {} at least); ask for fewer times or a larger size",
-                        count, counted(columns, "column"), video.width_px, video.height_px, kMinCellPx));
+            fmt::format("{} cells{} have no room in a contact sheet of {}x{} pixels (each takes {} at "
+                        "least), {} have; ask for fewer times or a larger size",
+                        count, asked == 0 ? "" : " in " + counted(columns, "column"), video.width_px,
+                        video.height_px, kMinCellPx, most));
     }
     scene.overlay.time = false;  // it is written below the cell
     video.width_px = sheet.cell_width_px();

@@ -318,7 +318,7 @@ Film::Film(const Scene& scene, FilmDef def) {
         for (double& time_s : def.stills_s) time_s = *pipeline::motion_time_s(scene, time_s);
         impl_ = std::make_unique<Impl>(scene, std::move(def));
     } catch (const Refusal& refusal) {
-        throw pipeline::explained(refusal, scene.source);
+        throw pipeline::explained(refusal, scene);
     }
 }
 

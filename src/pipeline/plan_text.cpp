@@ -51,8 +51,8 @@ std::string_view remedy(Refusal::Reason reason) {
         case Reason::kMaterial:
             return "remove compliance, string and bending, or use method auto";
         case Reason::kUnknownTensions:
-            return "set style.color_by = \"strain\" or \"speed\", style.arrows = \"velocity\", "
-                   "or let the bars stretch by a compliance";
+            return "set style.color_by = \"strain\" or \"speed\", style.arrows = \"velocity\" or "
+                   "\"weight\", or let the bars stretch by a compliance";
     }
     return "";
 }
@@ -262,8 +262,12 @@ std::string method_caption(const Plan& plan, const std::optional<double>& error_
                        view::localized(bound, language));
 }
 
-Error pipeline::explained(const Refusal& refusal, const std::string& source) {
-    const std::string place = source.empty() ? "" : source + ": ";
+Error pipeline::explained(const Refusal& refusal, const Scene& scene) {
+    std::string place = scene.source.empty() ? "" : scene.source + ": ";
+    if (refusal.reason() == Refusal::Reason::kUnknownTensions) {
+        if (scene.style.color_by == ColorBy::kTension) place += "style.color_by: ";
+        if (scene.style.arrows == Arrows::kTension) place += "style.arrows: ";
+    }
     return {refusal.code(), fmt::format("{}{}; {}", place, refusal.what(), remedy(refusal.reason()))};
 }
 

@@ -69,7 +69,7 @@ namespace pipeline {
 
 /// The refusal of a scene as an error that names its file (Scene::source), the problem, and the keys to
 /// change.
-[[nodiscard]] Error explained(const Refusal& refusal, const std::string& source);
+[[nodiscard]] Error explained(const Refusal& refusal, const Scene& scene);
 
 }  // namespace pipeline
 }  // namespace corda

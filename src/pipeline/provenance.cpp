@@ -27,11 +27,18 @@ constexpr std::size_t kMaxParticles = 100'000;
 constexpr std::size_t kMaxTimes = 1000;
 constexpr std::size_t kMaxName = 200;
 
-[[noreturn]] void fail_at(const std::string& path, const std::string& problem) {
-    throw Error(ExitCode::kUsage,
-                fmt::format("'{}' {}; give a PNG, or a video that is no animation, which a command of corda "
-                            "has written",
-                            path, problem));
+constexpr std::string_view kVideoRemedy =
+    "give a video that corda render has written (.mp4, .mov, .mkv, .webm)";
+
+std::string_view remedy(OriginUse use) {
+    return use == OriginUse::kJoin
+               ? kVideoRemedy
+               : "give a PNG, or a video that is no animation, which a command of corda has written";
+}
+
+[[noreturn]] void fail_at(const std::string& path, const std::string& problem,
+                          OriginUse use = OriginUse::kFrom) {
+    throw Error(ExitCode::kUsage, fmt::format("'{}' {}; {}", path, problem, remedy(use)));
 }
 
 Json json_of(const PictureOrigin& picture) {
@@ -213,8 +220,8 @@ std::optional<PictureOrigin> frame_of_sequence(const std::string& number) {
     return PictureOrigin{.command = "frame", .times = {{frame, 0.0}}};
 }
 
-std::string text_in_video(const std::string& path) {
-    const std::string text = media::comment_in_child(path);
+std::string text_in_video(const std::string& path, OriginUse use) {
+    const std::string text = media::comment_in_child(path, remedy(use));
     Json comment = Json::parse(text, nullptr, false);  // its size and depth were checked
     if (!comment.is_object() || !comment.contains(kProvenanceKey)) return {};
     Json& provenance = comment[kProvenanceKey];
@@ -300,26 +307,30 @@ Provenance provenance_in(const PngInfo& info) {
     }
 }
 
-Provenance read_provenance(const std::string& path) {
+Provenance read_provenance(const std::string& path, OriginUse use) {
     if (path.ends_with(".toml"))
-        throw Error(ExitCode::kUsage, fmt::format("'{}' is a scene file; give it without --from", path));
+        throw Error(ExitCode::kUsage,
+                    fmt::format("'{}' is a scene file; {}", path,
+                                use == OriginUse::kJoin ? kVideoRemedy : "give it without --from"));
     const std::string kind = media::file_kind(path);
     if (kind == "gif" || kind == "apng" || kind == "webp")
-        fail_at(path, "is a GIF, an APNG or a WebP, none of which tells what it was made from");
+        fail_at(path, "is a GIF, an APNG or a WebP, none of which tells what it was made from", use);
     PngTexts png;
     if (media::is_png(path))
         png = texts_in(read_png_info(path));
     else
-        png.provenance = text_in_video(path);
+        png.provenance = text_in_video(path, use);
     const std::string& text = png.provenance;
-    if (text.empty()) fail_at(path, "does not tell what it was made from");
-    if (text.size() > 2 * Provenance::kMaxBytes) fail_at(path, "tells more than corda writes");
+    if (text.empty()) fail_at(path, "does not tell what it was made from", use);
+    if (text.size() > 2 * Provenance::kMaxBytes) fail_at(path, "tells more than corda writes", use);
     Provenance provenance;
     try {
         provenance = parsed(media::parse_untrusted_json(text));
     } catch (const std::exception& error) {
-        fail_at(path, fmt::format("tells what it was made from in a way that is damaged ({})",
-                                  printable(error.what())));
+        fail_at(
+            path,
+            fmt::format("tells what it was made from in a way that is damaged ({})", printable(error.what())),
+            use);
     }
     if (!provenance.picture) provenance.picture = frame_of_sequence(png.frame);
     return provenance;

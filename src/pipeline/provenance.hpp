@@ -91,10 +91,13 @@ inline constexpr const char* kProvenanceKey = "provenance";
 /// Provenance in the texts of a PNG; without a name if there is none, or it is damaged.
 [[nodiscard]] Provenance provenance_in(const PngInfo& info);
 
+/// For which advice errors give: a file of --from, or a part of a joined video.
+enum class OriginUse { kFrom, kJoin };
+
 /// Reads what a PNG or a video carries; a video in a child process (see core/child_process.hpp).
 /// Throws corda::Error: kIo if the file cannot be read, kUsage if it carries nothing, or what it carries is
 /// damaged.
-[[nodiscard]] Provenance read_provenance(const std::string& path);
+[[nodiscard]] Provenance read_provenance(const std::string& path, OriginUse use = OriginUse::kFrom);
 
 /// The scene of a file, with `settings` in place of what it says; messages name the file. Throws corda::Error
 /// (kUsage) for one with no scene, or several.

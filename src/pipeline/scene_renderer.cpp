@@ -329,7 +329,7 @@ Renderer::Renderer(const Scene& scene, const std::string& backend) {
     try {
         impl_ = std::make_unique<Impl>(scene, backend);
     } catch (const Refusal& refusal) {
-        throw pipeline::explained(refusal, scene.source);
+        throw pipeline::explained(refusal, scene);
     }
 }
 Renderer::Renderer(Renderer&&) noexcept = default;

@@ -43,6 +43,7 @@ class ValueChecker {
         if (!key_->type.names.empty() && node.is_string())
             return check_word(key_->type.names, node.as_string()->get(), node, path);
         if (list == nullptr && takes(kOne)) return check_one(node, path);
+        if (list == nullptr && is_one_choice(node)) return fail_for_one(node, path);
         if (list == nullptr) return fail_type(node, path, takes(kList | kPairs) ? "a list" : key_->type.pair);
         if (key_->type.forms == kOne) return fail_type(node, path, one_words());
         const bool is_nested = !list->empty() && list->get(0)->is_array();
@@ -52,6 +53,19 @@ class ValueChecker {
 
   private:
     [[nodiscard]] bool takes(unsigned forms) const { return (key_->type.forms & forms) != 0; }
+
+    [[nodiscard]] bool is_one_choice(const toml::node& node) const {
+        const auto& choices = key_->type.choices;
+        return node.is_string() && takes(kList) &&
+               std::find(choices.begin(), choices.end(), node.as_string()->get()) != choices.end();
+    }
+
+    bool fail_for_one(const toml::node& node, const std::string& path) const {
+        const std::string& word = node.as_string()->get();
+        problems_->add(node.source(), path,
+                       fmt::format("\"{0}\" is a string, not a list; write [\"{0}\"]", word));
+        return false;
+    }
 
     bool check_list(const toml::array& list, const std::string& path) const {
         if (list.size() < key_->type.min_entries)

@@ -232,10 +232,13 @@ std::string remedy(const Key& key) {
     }
 }
 
-std::string keys_text() {
-    std::string text = "Keys of a scene file (TOML)\n";
+std::string keys_text(std::string_view only) {
+    std::string text;
     std::string_view section = "none";
     for (const Key& key : all_keys()) {
+        if (!only.empty() && key.section != only && !key.section.starts_with(fmt::format("{}.", only)))
+            continue;
+        if (text.empty()) text = "Keys of a scene file (TOML)\n";
         if (key.section != section) text += fmt::format("\n{}\n", heading(key.section));
         section = key.section;
         text += text_row(key);

@@ -125,8 +125,9 @@ struct Key {
 /// The shortest decimal text that reads as the same bits: "1e-9", "0.08", "-0.0".
 [[nodiscard]] std::string number_text(double value);
 
-/// The list of keys for a terminal.
-[[nodiscard]] std::string keys_text();
+/// The list of keys for a terminal: of all tables, or of one (`overlay`) and the tables in it. Empty if there
+/// is no such table.
+[[nodiscard]] std::string keys_text(std::string_view only = "");
 
 /// The list of keys as a Markdown table.
 [[nodiscard]] std::string keys_markdown();

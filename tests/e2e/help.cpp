@@ -12,7 +12,9 @@ namespace corda {
 namespace {
 
 using test::run_corda;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 TEST(Help, EqualsTheHelpOption) {
     const auto general = run_corda({"help"});
@@ -30,6 +32,9 @@ TEST(Help, ListsTheKeysOfAScene) {
     const auto scene = run_corda({"help", "scene"});
     EXPECT_EQ(scene.exit_code, 0);
     EXPECT_EQ(scene.out, scene::keys_text());
+    for (const char* const table : {"style", "overlay.texts"})
+        EXPECT_EQ(run_corda({"help", table}).out, scene::keys_text(table));
+    EXPECT_THAT(scene::keys_text("overlay.texts"), AllOf(HasSubstr("from"), Not(HasSubstr("trail_s"))));
     const auto help = nlohmann::json::parse(run_corda({"help", "scene", "--json"}).out);
     EXPECT_EQ(help.at("help"), scene::keys_text());
 }

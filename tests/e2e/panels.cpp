@@ -96,7 +96,7 @@ TEST_F(SeveralScenes, WithoutAGridOrOneClockAreRefused) {
     const std::string a = scene("a", "1");
     const std::string out = file("c.mp4");
     expect_failure({"render", a, a, "-o", out}, 2,
-                   "--panels : is no grid COLUMNSxROWS of 2 scenes; give e.g. --panels 2x1");
+                   "2 scenes need a grid COLUMNSxROWS; give e.g. --panels 2x1");
     expect_failure({"render", a, a, a, "--panels", "2x1", "-o", out}, 2,
                    "--panels 2x1: is no grid COLUMNSxROWS of 3 scenes; give e.g. --panels 3x1");
     for (const char* const panels : {"2", "2x", "0x1", "2x1x1", "-2x-1", "x", "99999999x1"})
@@ -146,13 +146,20 @@ TEST_F(SeveralScenes, AreJoinedOnlyIfTheyAgree) {
     expect_refused({"--size", "80x48"}, "its size (--size) is 80x48 and not 64x48");
     expect_refused({"--fps", "20"}, "its rate (--fps) is 20 and not 10");
     expect_refused({"--pix", "444"}, "its codec (--codec, --pix) is h264 High 4:4:4");
-    expect_refused({"--crf", "30"}, "other settings (--preset, --crf)");
+    expect_refused({"--crf", "30"},
+                   "its encoder settings (--preset, --crf) differ; render both with the same options");
     run({"render", toml, "-o", file("b.webm")});
     expect_failure({"join", a, file("b.webm"), "-o", out}, 7, "its codec (--codec, --pix) is vp9");
     expect_failure({"join", a, a, "-o", file("c.webm")}, 2, "cannot be made of h264");
     expect_failure({"join", a, a, "-o", file("c.gif")}, 2, "no video that can be joined");
     expect_failure({"join", a, a, "-o", a, "--force"}, 2, "would replace the input");
     expect_failure({"join", a, "-o", out}, 2, "FILES");
+    const std::string advice = "give a video that corda render has written";
+    expect_failure({"join", a, toml, "-o", out}, 2, "is a scene file; " + advice);
+    run({"render", toml, "-o", file("b.gif")});
+    expect_failure({"join", a, file("b.gif"), "-o", out}, 2, advice);
+    test::write_file(file("text.mp4"), "text");
+    expect_failure({"join", a, file("text.mp4"), "-o", out}, 6, advice);
     EXPECT_EQ(read_file(out), "");
 }
 

@@ -36,11 +36,9 @@ namespace {
 
 [[noreturn]] void fail_differing(const std::string& part, const std::string& first,
                                  const std::string& problem) {
-    throw Error(
-        ExitCode::kMismatch,
-        fmt::format("'{}' cannot be joined to '{}': {}; render one of them again with the settings of "
-                    "the other",
-                    part, first, problem));
+    throw Error(ExitCode::kMismatch,
+                fmt::format("'{}' cannot be joined to '{}': {}; render both with the same options", part,
+                            first, problem));
 }
 
 /// A chunk file, open for reading its packets.
@@ -133,8 +131,7 @@ std::vector<FrameColors> for_each_chunk(const Chunks& chunks, const ChunkInput& 
         if (!are_of_one_video(first.parameters(), chunk.parameters()) ||
             first.has_alpha() != chunk.has_alpha())
             fail_differing(chunk.file().path, first.file().path,
-                           "it is of another video than the chunks before it, or was encoded with other "
-                           "settings (--preset, --crf)");
+                           "it is of another video, or its encoder settings (--preset, --crf) differ");
         for (FrameColors& frame : chunk.colors(frames))
             if (colors.empty() || frame.frame > colors.back().frame) colors.push_back(std::move(frame));
         work(chunk, frames);

@@ -133,29 +133,29 @@ std::string finished_comment(const std::string& comment, std::int64_t frames,
 namespace {
 
 constexpr ChildLimits kCommentLimits{std::uint64_t{4} << 30, 20, 60.0};
-[[noreturn]] void fail_reading(const std::string& path, ExitCode code, const std::string& problem) {
-    throw Error(code, fmt::format("cannot read '{}': {}; give a PNG or a video that corda has written", path,
-                                  problem));
+[[noreturn]] void fail_reading(const std::string& path, ExitCode code, const std::string& problem,
+                               std::string_view remedy) {
+    throw Error(code, fmt::format("cannot read '{}': {}; {}", path, problem, remedy));
 }
 
-std::string read_comment(const std::string& path) {
+std::string read_comment(const std::string& path, std::string_view remedy) {
     try {
         return metadata_entry(Decoder(path).format(), "comment");
     } catch (const Error& error) {
-        fail_reading(path, ExitCode::kIo, error.what());
+        fail_reading(path, ExitCode::kIo, error.what(), remedy);
     }
 }
 
 }  // namespace
 
-std::string comment_in_child(const std::string& path) {
+std::string comment_in_child(const std::string& path, std::string_view remedy) {
     load_libav();
     const QuietLog quiet;
-    const auto end = run_in_child([&] { return read_comment(path); }, kCommentLimits);
-    if (end && !end->finished()) fail_reading(path, ExitCode::kIo, "it " + end->text);
-    std::string comment = end ? end->text : read_comment(path);
+    const auto end = run_in_child([&] { return read_comment(path, remedy); }, kCommentLimits);
+    if (end && !end->finished()) fail_reading(path, ExitCode::kIo, "it " + end->text, remedy);
+    std::string comment = end ? end->text : read_comment(path, remedy);
     if (const std::string problem = comment_problem(comment); !problem.empty())
-        fail_reading(path, ExitCode::kUsage, "its comment " + problem);
+        fail_reading(path, ExitCode::kUsage, "its comment " + problem, remedy);
     return comment;
 }
 

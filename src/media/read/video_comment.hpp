@@ -47,10 +47,11 @@ inline constexpr int kDeepestJsonLevel = 16;
                                            const std::vector<ColorPatch>& first);
 
 /// The comment of a video of any origin, read in a child process with limits on memory and time; empty if it
-/// has none. Throws corda::Error: kIo if the file cannot
+/// has none. `remedy` ends the messages. Throws corda::Error: kIo if the file cannot
 /// be read or is no video, kUsage if its comment has a comment_problem(), and what run_in_child throws, which
 /// also says why this process must have no other thread.
-[[nodiscard]] std::string comment_in_child(const std::string& path);
+[[nodiscard]] std::string comment_in_child(const std::string& path,
+                                           std::string_view remedy = "give a video that corda has written");
 
 }  // namespace media
 }  // namespace corda

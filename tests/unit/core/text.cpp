@@ -81,6 +81,7 @@ TEST(Nearest, FindsTheNearestWord) {
     EXPECT_EQ(nearest("partcles", kWords), "particles");
     EXPECT_EQ(nearest("part", kWords), "particles");
     EXPECT_EQ(nearest("fbs", kWords), "fps");
+    EXPECT_EQ(nearest("fp", kWords), "fps");
 }
 
 TEST(Nearest, IsEmptyIfNoneIsClose) {
@@ -88,6 +89,7 @@ TEST(Nearest, IsEmptyIfNoneIsClose) {
     EXPECT_FALSE(nearest("weight", kWords));
     EXPECT_FALSE(nearest("mass_of_balls", kWords));
     EXPECT_FALSE(nearest("ab", kWords));
+    EXPECT_FALSE(nearest("it", std::array<std::string_view, 2>{"en", "pt"}));  // half of its letters
     EXPECT_FALSE(nearest(std::string(100'000, 'm'), kWords));
     EXPECT_FALSE(nearest("mass", {}));
 }

@@ -99,7 +99,7 @@ TEST_F(Video, AForgedChunkIsRefused) {
         EXPECT_THAT(failure.message, HasSubstr(words));
     };
     expect_refused("no video", "is damaged");
-    expect_refused(other, "it is of another video than the chunks before it");
+    expect_refused(other, "it is of another video, or its encoder settings");
     expect_refused(whole.substr(0, whole.size() - 700), "is damaged");
     std::string slow = whole;
     slow.at(slow.find("stts") + 19) = 2;  // the last byte of a frame's duration
