@@ -22,7 +22,7 @@ packages=(
     libavformat-dev         # muxers and demuxers of MP4, WebM, Matroska, GIF, APNG
     libavutil-dev           # frames and error texts of the two above
     libx264-dev             # H.264 with hints on unchanged macroblocks, which libavcodec cannot pass on
-    zlib1g-dev              # masks in the .npz files of sweeps
+    zlib1g-dev              # masks in the .npz files of sweeps, and long scenes in pictures and videos
     libwebp-dev             # animated WebP, which libavcodec does not decode
     libeigen3-dev           # sparse factorisation for nets of bars
     libcairo2-dev           # stills as PDF
@@ -49,7 +49,7 @@ if [[ "${1:-build}" != build ]]; then
         libgmock-dev        # its matchers
         libbenchmark-dev    # measured speed
         libswscale-dev      # shows pictures as a player does, for their measured quality
-        fonts-wqy-microhei  # a font with Chinese characters
+        fonts-arphic-uming  # a font with Chinese characters, of which the small ones are bitmaps as well
         clang-format        # the style check
         clang               # the tests under the sanitizers, by a second compiler
         libclang-rt-dev     # its sanitizers

@@ -66,7 +66,8 @@ Pattern pattern_of(const Ground& ground, int height) {
 FontFace make_font_face(const view::FallbackFont* font) {
     static const cairo_user_data_key_t key{};
     auto file = std::make_unique<view::FontFile>(font);
-    FontFace face(cairo_ft_font_face_create_for_ft_face(file->face(), FT_LOAD_NO_HINTING));
+    FontFace face(
+        cairo_ft_font_face_create_for_ft_face(file->face(), FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP));
     check(cairo_font_face_set_user_data(face.get(), &key, file.get(),
                                         [](void* kept) { delete static_cast<view::FontFile*>(kept); }));
     static_cast<void>(file.release());

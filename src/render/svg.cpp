@@ -177,8 +177,8 @@ class Svg : public VectorPage {
             // errs equally on both sides.
             const int width_px = font_.width_px(text.utf8, text.size_px);
             std::string families = "DejaVu Sans";
-            for (const view::FontRun& run : font_.runs_of(text.utf8))
-                if (run.font != nullptr) families += ", " + markup_text(run.font->family);
+            for (const view::FallbackFont* const font : view::fallback_fonts({text.utf8}))
+                families += ", " + markup_text(font->family);
             fmt::format_to(out,
                            R"(<text x="{}" y="{}" text-anchor="middle" textLength="{}" )"
                            R"(font-family="{}, sans-serif" font-size="{}" fill="{}"{} )"

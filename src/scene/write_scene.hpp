@@ -22,10 +22,10 @@ namespace corda {
 /// The table [solver] with its [[solver.bodies]] as a setting: "solver={method = "exact", tolerance = 1e-9}".
 [[nodiscard]] Setting solver_setting(const Scene& scene);
 
-/// The values of a written scene by their keys ("video.crf", "rope[0].hang.links"), long ones as a hash.
 /// The texts of a scene that people write: title, texts and labels.
 [[nodiscard]] std::vector<std::string> shown_texts(const Scene& scene);
 
+/// The values of a written scene by their keys ("video.crf", "rope[0].hang.links"), long ones as a hash.
 /// Scenes of equal digests have equal frames, whatever they were read from. A scene of more than a hundred
 /// bodies has one hash for all of them.
 [[nodiscard]] std::map<std::string, std::string> digest(const Scene& scene);

@@ -25,10 +25,11 @@ std::optional<FallbackFont> find_font(char32_t character) {
     const Pattern wanted(FcPatternCreate());
     FcPatternAddCharSet(wanted.get(), FC_CHARSET, characters.get());
     FcPatternAddString(wanted.get(), FC_FAMILY, reinterpret_cast<const FcChar8*>("sans-serif"));
-    // The same font whatever the language of the environment is.
+    // The same font and name whatever the language of the environment is.
     FcPatternAddString(wanted.get(), FC_LANG, reinterpret_cast<const FcChar8*>("en"));
     FcPatternAddBool(wanted.get(), FC_SCALABLE, FcTrue);
     FcPatternAddBool(wanted.get(), FC_COLOR, FcFalse);
+    FcPatternAddString(wanted.get(), FC_NAMELANG, reinterpret_cast<const FcChar8*>("en"));
     FcConfigSubstitute(nullptr, wanted.get(), FcMatchPattern);
     FcDefaultSubstitute(wanted.get());
     FcResult result{};

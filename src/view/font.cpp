@@ -111,9 +111,12 @@ struct Font::Impl {
         const FT_Face face =
             other == nullptr ? file.face() : others.try_emplace(other, other).first->second.face();
         check_font(FT_Set_Pixel_Sizes(face, 0, static_cast<FT_UInt>(size_px)));
-        check_font(FT_Load_Char(face, character, FT_LOAD_RENDER | FT_LOAD_TARGET_LIGHT));
+        check_font(FT_Load_Char(face, character, FT_LOAD_RENDER | FT_LOAD_TARGET_LIGHT | FT_LOAD_NO_BITMAP));
         const FT_GlyphSlot slot = face->glyph;
         const FT_Bitmap& bitmap = slot->bitmap;
+        if (bitmap.rows > 0 && bitmap.pixel_mode != FT_PIXEL_MODE_GRAY)
+            throw Error(ExitCode::kInternal,
+                        fmt::format("FreeType: a glyph of {} pixels has no levels of grey", size_px));
         Glyph glyph;
         glyph.left_px = slot->bitmap_left;
         glyph.top_px = slot->bitmap_top;
@@ -195,16 +198,22 @@ std::string missing_glyph(const std::string& text) {
                        reasons, others, packages, leave_out);
 }
 
-std::vector<std::string> fallback_names(const std::vector<std::string>& texts) {
-    std::vector<std::string> names;
+std::vector<const FallbackFont*> fallback_fonts(const std::vector<std::string>& texts) {
+    std::vector<const FallbackFont*> fonts;
     const Font font;
     for (const std::string& text : texts) {
         for (const FontRun& run : font.runs_of(text)) {
-            if (run.font == nullptr) continue;
-            const std::string name = run.font->family + " " + run.font->version;
-            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+            const auto is_its = [&](const FallbackFont* other) { return other->name() == run.font->name(); };
+            if (run.font != nullptr && std::none_of(fonts.begin(), fonts.end(), is_its))
+                fonts.push_back(run.font);
         }
     }
+    return fonts;
+}
+
+std::vector<std::string> fallback_names(const std::vector<std::string>& texts) {
+    std::vector<std::string> names;
+    for (const FallbackFont* const font : fallback_fonts(texts)) names.push_back(font->name());
     return names;
 }
 

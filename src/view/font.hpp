@@ -19,6 +19,8 @@ struct FallbackFont {
     int index = 0;  ///< of the face in the file
     std::string family;
     std::string version;
+
+    [[nodiscard]] std::string name() const { return family + " " + version; }
 };
 
 /// True for scripts that run from the right or whose letters change next to others, which takes more than
@@ -94,7 +96,8 @@ class Font {
 /// out", or install a font. Empty if it can.
 [[nodiscard]] std::string missing_glyph(const std::string& text);
 
-/// Names and versions of the fallback fonts of texts: "WenQuanYi Micro Hei 0.200".
+/// The fallback fonts of texts, each name once: "WenQuanYi Micro Hei 0.200".
+[[nodiscard]] std::vector<const FallbackFont*> fallback_fonts(const std::vector<std::string>& texts);
 [[nodiscard]] std::vector<std::string> fallback_names(const std::vector<std::string>& texts);
 
 // Sizes of text as shares of the em.

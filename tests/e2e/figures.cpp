@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cstdlib>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "corda/golden/compare.hpp"
@@ -195,17 +197,28 @@ TEST_F(Figures, HaveTextAsText) {
 }
 
 TEST_F(Figures, HaveOtherFontsForWhatTheirsLacks) {
-    for (const char* const name : {"a.svg", "a.pdf", "a.png"}) {
-        const auto result = run_corda({"still", scene_, "--at", "0.3", "-o", folder_.file(name), "--set",
-                                       "overlay={title=\"Pendel 振り子 A\",time=false,scale_bar=false}"});
-        EXPECT_EQ(result.exit_code, 0) << result.err;
+    const std::vector<std::string> command{
+        "still", scene_,  "--at",
+        "0.3",   "--set", "overlay={title=\"振り子 Pendel 振り子\",time=false,scale_bar=false}"};
+    std::map<std::string, std::vector<std::string>> pictures;
+    for (const char* const locale : {"C.UTF-8", "zh_CN.UTF-8"}) {
+        for (const char* const name : {"a.svg", "a.pdf", "a.png"}) {
+            auto words = command;
+            words.insert(words.end(), {"-o", folder_.file(name), "--force"});
+            const auto result = run_corda(words, std::string("LC_ALL=") + locale);
+            ASSERT_EQ(result.exit_code, 0) << result.err;
+            pictures[name].push_back(test::read_file(folder_.file(name)));
+        }
     }
+    for (const auto& [name, bytes] : pictures) EXPECT_TRUE(bytes[0] == bytes[1]) << name;
     EXPECT_EQ(test::run_shell("pdftotext " + test::quoted(folder_.file("a.pdf")) + " - | head -1").out,
-              "Pendel 振り子 A\n");
-    EXPECT_NE(test::run_shell("pdffonts " + test::quoted(folder_.file("a.pdf")) + " | grep -c yes").out,
-              "1\n");
+              "振り子 Pendel 振り子\n");
+    const auto embedded =
+        test::run_shell("pdffonts " + test::quoted(folder_.file("a.pdf")) + " | grep -c ' yes yes yes '");
+    EXPECT_EQ(embedded.out, "2\n") << embedded.err;
     const std::string family =
-        test::run_shell("fc-match -f '%{family[0]}' sans-serif:charset=632f:lang=en").out;
+        test::run_shell("LC_ALL=C fc-match -f '%{family[0]}' sans-serif:charset=632f:lang=en:namelang=en")
+            .out;
     EXPECT_THAT(test::read_file(folder_.file("a.svg")),
                 HasSubstr("font-family=\"DejaVu Sans, " + family + ", sans-serif\""));
     std::string provenance;
@@ -218,6 +231,18 @@ TEST_F(Figures, HaveOtherFontsForWhatTheirsLacks) {
     EXPECT_THAT(refused.err,
                 HasSubstr("overlay.title: no font of this machine has U+2FA20; install one (Debian: "
                           "apt-get install fonts-noto-cjk), or leave that character out"));
+}
+
+TEST_F(Figures, DrawSmallCharactersAsOutlinesWhereTheFontHasBitmaps) {
+    const std::string fonts =
+        folder_.write("fonts.conf", "<fontconfig><dir>/usr/share/fonts/truetype/arphic</dir><cachedir>" +
+                                        folder_.path() + "</cachedir></fontconfig>");
+    ASSERT_EQ(::setenv("FONTCONFIG_FILE", fonts.c_str(), 1), 0);
+    // 118 where bits are read as levels of grey.
+    expect_same_pictures({"still", "--at", "0.3", "--set", "rope[0].label=漢字の振り子", "--set",
+                          "overlay={text_px=12,time=false,scale_bar=false}"},
+                         60);
+    ::unsetenv("FONTCONFIG_FILE");
 }
 
 TEST_F(Figures, HaveTheSameBytesOnEveryRun) {
