@@ -95,7 +95,7 @@ std::string scene_change(const std::string& reference, const Scene& now,
     return differences_text(changes);
 }
 
-Cause cause_of(const Provenance& kept, const GoldenRecord& now) {
+Cause cause_of(const Provenance& kept, const GoldenRecord& now, const std::vector<std::string>& fonts) {
     if (!kept.golden) {
         constexpr const char* kUnknown = "pixels differ; the reference does not say how it was made";
         return {kUnknown, kUnknown};
@@ -116,6 +116,12 @@ Cause cause_of(const Provenance& kept, const GoldenRecord& now) {
     if (!reference.color_scale.empty() && reference.color_scale != now.color_scale)
         return drawn(fmt::format("another scale of colours: {}, now {}", reference.color_scale,
                                  now.color_scale.empty() ? "none" : now.color_scale));
+    const auto words = [](const std::vector<std::string>& names) {
+        return names.empty() ? std::string("none") : fmt::format("{}", fmt::join(names, ", "));
+    };
+    if (kept.fonts != fonts)
+        return drawn(
+            fmt::format("other fonts besides DejaVu Sans: {}, now {}", words(kept.fonts), words(fonts)));
     if (kept.corda != version())
         return drawn(fmt::format("drawn by another version of Corda: {}, now {}", kept.corda, version()));
     if (reference.renderer != now.renderer)

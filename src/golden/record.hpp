@@ -38,8 +38,9 @@ struct Cause {
 /// Cause::group of pictures that nothing known distinguishes.
 inline constexpr const char* kPixelsDiffer = "pixels differ";
 
-/// The most likely cause of the difference from a kept picture, in words.
-[[nodiscard]] Cause cause_of(const Provenance& kept, const GoldenRecord& now);
+/// The most likely cause of the difference from a kept picture, in words. `fonts` as Provenance::fonts.
+[[nodiscard]] Cause cause_of(const Provenance& kept, const GoldenRecord& now,
+                             const std::vector<std::string>& fonts);
 
 /// The largest distance between particles in m; empty if positions are not known or differ in number.
 [[nodiscard]] std::optional<double> largest_distance_m(const GoldenRecord& a, const GoldenRecord& b);

@@ -17,6 +17,8 @@
 #include "corda/golden/record.hpp"
 #include "corda/media/png/png.hpp"
 #include "corda/pipeline/film_renderer.hpp"
+#include "corda/scene/write_scene.hpp"
+#include "corda/view/font.hpp"
 
 namespace corda::golden {
 namespace {
@@ -55,7 +57,8 @@ bool passes(const Drawn& drawn, const DifferenceLimits& limits, const std::strin
                   {.flip = limits.flip.has_value(), .ssim = limits.ssim.has_value()}, picture.difference,
                   drawn.mask);
     if (picture.difference.within(limits)) return true;
-    const Cause cause = cause_of(provenance_in(read_png_info(path)), drawn.made);
+    const Cause cause = cause_of(provenance_in(read_png_info(path)), drawn.made,
+                                 view::fallback_names(shown_texts(drawn.scene)));
     picture.cause = cause.text;
     picture.group = cause.group;
     if (!picture.difference.same_size)

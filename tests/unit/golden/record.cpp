@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -38,7 +40,7 @@ TEST(GoldenRecords, SurvivesARoundTrip) {
     EXPECT_EQ(read.golden->positions_m, made.positions_m);
     EXPECT_EQ(read.golden->color_scale, made.color_scale);
     EXPECT_TRUE(read.golden->is_frozen_as(made));
-    EXPECT_EQ(cause_of(read, made).text, "same positions, camera and version, but pixels differ");
+    EXPECT_EQ(cause_of(read, made, {}).text, "same positions, camera and version, but pixels differ");
 }
 
 TEST(GoldenRecords, NamesTheKeyOfTheSceneThatChanged) {
@@ -75,7 +77,8 @@ TEST(GoldenRecords, FitWithTheMostParticlesBesideAScene) {
     origin.golden = record_of(film, 0.0);
     const std::string text = provenance_text(origin);
     EXPECT_LE(text.size(), Provenance::kMaxBytes);  // 9.0 KiB
-    origin.scene.append(Provenance::kMaxBytes, '#');
+    std::mt19937 random(1);
+    while (origin.scene.size() < 3 * Provenance::kMaxBytes) origin.scene += fmt::format("#{:08x}", random());
     const std::string longest = provenance_text(origin);
     EXPECT_LE(longest.size(), Provenance::kMaxBytes);
     for (const std::string& one : {text, longest}) {
@@ -101,24 +104,30 @@ TEST(GoldenRecords, ReportTheFirstDifference) {
     Provenance kept{.corda = std::string(version()), .golden = made};
     GoldenRecord& other = *kept.golden;
     other.renderer = "Voodoo";
-    EXPECT_THAT(cause_of(kept, made).text, HasSubstr("another OpenGL: Voodoo"));
+    EXPECT_THAT(cause_of(kept, made, {}).text, HasSubstr("another OpenGL: Voodoo"));
     kept.corda = "0.0.1";
-    EXPECT_THAT(cause_of(kept, made).text, HasSubstr("another version of Corda: 0.0.1"));
+    EXPECT_THAT(cause_of(kept, made, {}).text, HasSubstr("another version of Corda: 0.0.1"));
+    kept.fonts = {"Song 1.000", "Han 2.000"};
+    EXPECT_EQ(
+        cause_of(kept, made, {"Song 1.100"}).text,
+        "same positions and camera, other fonts besides DejaVu Sans: Song 1.000, Han 2.000, now Song 1.100");
+    EXPECT_THAT(cause_of(kept, made, {}).text, HasSubstr("Han 2.000, now none"));
+    EXPECT_THAT(cause_of(kept, made, kept.fonts).text, HasSubstr("another version of Corda"));
     other.color_scale = "speed (m/s) 0 .. 2";
-    EXPECT_EQ(cause_of(kept, made).text,
+    EXPECT_EQ(cause_of(kept, made, {}).text,
               "same positions and camera, another scale of colours: speed (m/s) 0 .. 2, now none");
     other.height_m = 9.0;
-    EXPECT_EQ(cause_of(kept, made).text, "same positions, other camera");
+    EXPECT_EQ(cause_of(kept, made, {}).text, "same positions, other camera");
     other.state = "0";
-    EXPECT_EQ(cause_of(kept, made).text, "positions differ, if not those of the particles that are kept");
+    EXPECT_EQ(cause_of(kept, made, {}).text, "positions differ, if not those of the particles that are kept");
     other.positions_m[2] += 3e-4;
-    EXPECT_EQ(cause_of(kept, made).text, "positions differ by 0.0003 m");
-    EXPECT_EQ(cause_of(kept, made).group, "positions differ");
+    EXPECT_EQ(cause_of(kept, made, {}).text, "positions differ by 0.0003 m");
+    EXPECT_EQ(cause_of(kept, made, {}).group, "positions differ");
     other.solver = "solver={method = \"rattle\"}";
-    EXPECT_EQ(cause_of(kept, made).text, "positions differ by 0.0003 m, by another solver");
+    EXPECT_EQ(cause_of(kept, made, {}).text, "positions differ by 0.0003 m, by another solver");
     other.positions_m.pop_back();
-    EXPECT_THAT(cause_of(kept, made).text, HasSubstr("another number of particles"));
-    EXPECT_THAT(cause_of({}, made).text, HasSubstr("does not say how it was made"));
+    EXPECT_THAT(cause_of(kept, made, {}).text, HasSubstr("another number of particles"));
+    EXPECT_THAT(cause_of({}, made, {}).text, HasSubstr("does not say how it was made"));
 }
 
 TEST(GoldenRecords, AreReadOnlyIfTheyAreSound) {
