@@ -42,11 +42,14 @@ nlohmann::json to_json(const std::string& path, const media::VerifyReport& repor
             {"alpha", report.alpha}};
 }
 
-/// The seconds of the scene per second of the film; 1 for one that does not carry its scene.
+/// The seconds of the (first) scene per second of the film; 1 for one that does not carry its scene.
 Rational speed_of(const std::string& path) {
     try {
-        return scene_of(read_provenance(path), path).video.speed;
-    } catch (const Error&) {
+        Provenance made = read_provenance(path);
+        while (!made.parts.empty()) made = Provenance(made.parts.front());
+        return scene_of(made, path).video.speed;
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::kUsage && error.code() != ExitCode::kInvalidScene) throw;
         return {1, 1};
     }
 }
