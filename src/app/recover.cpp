@@ -72,14 +72,17 @@ ExitCode join(const Console& console, const JoinOptions& options) {
         origins.push_back(read_provenance(part, OriginUse::kJoin));
     }
     const Provenance made = joined(origins);
-    const nlohmann::json comment{{"corda", version()},
-                                 {"scene", made.name},
-                                 {kProvenanceKey, nlohmann::json::parse(provenance_text(made))}};
+    const std::string provenance = provenance_text(made);
+    const nlohmann::json comment{
+        {"corda", version()}, {"scene", made.name}, {kProvenanceKey, nlohmann::json::parse(provenance)}};
     const media::ChunkRun run = media::join_videos(options.parts, options.output, made.name, comment.dump(),
                                                    {.force = options.force});
     nlohmann::json parts = nlohmann::json::array();
     for (const media::ChunkFile& part : run.chunks)
         parts.push_back({{"file", part.path}, {"frames", part.frames}});
+    if (const std::string reason = left_out_of(provenance); !reason.empty())
+        console.warning(fmt::format("{} does not carry the scenes of all parts, because {}; keep the parts",
+                                    options.output, reason));
     console.info(fmt::format("{} of {} videos; verified", counted(run.frames, "frame"), run.chunks.size()));
     console.result(options.output);
     console.report({{"schema", 1}, {"output", options.output}, {"frames", run.frames}, {"parts", parts}});

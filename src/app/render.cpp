@@ -217,6 +217,9 @@ void report_rendered(const Console& console, bool is_verified, const Rendered& r
     if (!rendered.damaged_chunks.empty())
         console.warning(fmt::format("damaged since they were written, and made again: chunk {}",
                                     fmt::join(rendered.damaged_chunks, ", ")));
+    if (!rendered.left_out.empty())
+        console.warning(fmt::format("--from cannot repeat the output, because {}; keep the scene file",
+                                    rendered.left_out));
     if (rendered.is_short_of_memory)
         console.info(fmt::format("only {} at a time: more would not fit into the memory that is free",
                                  counted(rendered.jobs, "chunk")));

@@ -27,8 +27,10 @@ std::string markup_text(std::string_view text) {
     return markup;
 }
 
+static constexpr std::string_view kDigits =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
 std::string base64(std::string_view bytes) {
-    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;
     text.reserve((bytes.size() + 2) / 3 * 4);
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
@@ -40,6 +42,22 @@ std::string base64(std::string_view bytes) {
             text += k <= three.size() ? kDigits[bits >> (18 - 6 * k) & 63U] : '=';
     }
     return text;
+}
+
+std::string from_base64(std::string_view text) {
+    std::string bytes;
+    unsigned bits = 0;
+    unsigned count = 0;  // of those that are part of no byte yet
+    for (const char c : text.substr(0, text.find('='))) {
+        const std::size_t digit = kDigits.find(c);
+        if (digit == std::string_view::npos) return "";
+        bits = bits << 6U | static_cast<unsigned>(digit);
+        count += 6;
+        if (count < 8) continue;
+        count -= 8;
+        bytes += static_cast<char>(bits >> count & 0xffU);
+    }
+    return bytes;
 }
 
 }  // namespace corda

@@ -11,6 +11,9 @@ namespace corda {
 /// Base64 (RFC 4648), for addresses of pictures that are part of a page.
 [[nodiscard]] std::string base64(std::string_view bytes);
 
+/// The bytes of such a text; empty for another text.
+[[nodiscard]] std::string from_base64(std::string_view text);
+
 /// The style sheet of HTML pages, to be embedded. Light or dark follows the reader's system.
 inline constexpr const char* kPageStyle = R"css(
 :root {

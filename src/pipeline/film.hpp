@@ -196,6 +196,7 @@ struct Rendered {
     double first_empty_s = 0.0;     ///< time of the first empty frame
     int jobs = 1;                   ///< number of chunks made at a time
     bool is_short_of_memory = false;  ///< jobs was reduced because memory is short
+    std::string left_out{};           ///< why a file that can carry its scenes does not; empty: it does
 };
 
 /// The most scenes in one video.

@@ -6,14 +6,17 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <zlib.h>
 #include <nlohmann/json.hpp>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
+#include "corda/core/markup.hpp"
 #include "corda/core/text.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/media/format/file_kind.hpp"
 #include "corda/media/read/video_comment.hpp"
+#include "corda/pipeline/film.hpp"
 #include "corda/scene/write_scene.hpp"
 #include "corda/view/font.hpp"
 
@@ -25,7 +28,10 @@ using Json = nlohmann::json;
 /// Larger scenes are not even tried: most have more text than there is room for.
 constexpr std::size_t kMaxParticles = 100'000;
 constexpr std::size_t kMaxTimes = 1000;
-constexpr std::size_t kMaxName = 200;
+constexpr std::size_t kMaxName = 255;
+constexpr const char* kPacked = "packed_scenes";
+/// Of the texts of all scenes of a file.
+constexpr std::size_t kMaxUnpacked = std::size_t{1} << 20;
 
 constexpr std::string_view kVideoRemedy =
     "give a video that corda render has written (.mp4, .mov, .mkv, .webm)";
@@ -146,11 +152,57 @@ Provenance parsed(const Json& json) {
     if (json.contains("picture")) provenance.picture = picture_of(json["picture"]);
     if (json.contains("golden")) provenance.golden = golden_of(json["golden"]);
     provenance.columns = json.value("columns", 0);
-    for (const Json& part : json.value("parts", Json::array())) provenance.parts.push_back(parsed(part));
-    const auto columns = static_cast<std::size_t>(std::max(provenance.columns, 1));
-    if (provenance.columns < 0 || provenance.parts.size() % columns != 0)
+    for (const Json& part : json.value("parts", Json::array())) {
+        provenance.parts.push_back(parsed(part));
+        std::string& left_out = provenance.parts.back().left_out;
+        if (left_out.empty()) left_out = provenance.left_out;
+    }
+    const std::size_t panels = provenance.parts.size();
+    const int columns = provenance.columns;
+    if (columns < 0 || (columns > 0 && (panels == 0 || panels > kMaxPanels ||
+                                        panels % static_cast<std::size_t>(columns) != 0)))
         throw Error(ExitCode::kUsage, "its panels are not what corda writes");
     if (!is_sound_name(provenance.name)) throw Error(ExitCode::kUsage, "its name is none of a scene");
+    return provenance;
+}
+
+/// Calls `visit` with the scene of a file and those of its parts.
+template <class Its, class Visit>
+void for_each_scene(Its& provenance, const Visit& visit) {
+    visit(provenance.scene);
+    for (auto& part : provenance.parts) for_each_scene(part, visit);
+}
+
+/// All scenes in base64 of a zlib stream, each with a NUL at its end.
+std::string packed(const std::string& scenes) {
+    uLongf size = compressBound(scenes.size());
+    std::string bytes(size, '\0');
+    if (compress2(reinterpret_cast<Bytef*>(bytes.data()), &size,
+                  reinterpret_cast<const Bytef*>(scenes.data()), scenes.size(), Z_BEST_COMPRESSION) != Z_OK)
+        throw std::bad_alloc();
+    return base64({bytes.data(), size});
+}
+
+void unpack(const std::string& text, Provenance& provenance) {
+    const std::string bytes = from_base64(text);
+    std::string scenes(kMaxUnpacked, '\0');
+    uLongf size = scenes.size();
+    const bool is_sound = uncompress(reinterpret_cast<Bytef*>(scenes.data()), &size,
+                                     reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()) == Z_OK;
+    std::string_view rest(scenes.data(), is_sound ? size : 0);
+    for_each_scene(provenance, [&rest](std::string& scene) {
+        const std::size_t end = rest.find('\0');
+        if (end == std::string_view::npos)
+            throw Error(ExitCode::kUsage, "its packed scenes are not what corda writes");
+        scene = rest.substr(0, end);
+        rest.remove_prefix(end + 1);
+    });
+}
+
+Provenance parsed(const std::string& text) {
+    const Json json = media::parse_untrusted_json(text);
+    Provenance provenance = parsed(json);
+    if (json.contains(kPacked)) unpack(json[kPacked].get<std::string>(), provenance);
     return provenance;
 }
 
@@ -167,20 +219,23 @@ Json json_of(const Provenance& provenance) {
     return json;
 }
 
-/// Removes all scenes.
-void leave_out(Provenance& provenance, const std::string& reason) {
-    provenance.scene.clear();
-    provenance.left_out = reason;
-    for (Provenance& part : provenance.parts) leave_out(part, "");
+/// A text of at most `bytes`, which ends in "..." if it was longer.
+std::string shortened(std::string text, std::size_t bytes) {
+    constexpr std::string_view kMore = "...";
+    if (text.size() <= bytes) return text;
+    std::size_t end = bytes - kMore.size();
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80) --end;  // within a character
+    return text.substr(0, end).append(kMore);
 }
 
-/// At most as many names of parts as are a sound name.
+/// The names of parts as a sound name.
 std::string names_of(const std::vector<Provenance>& parts, const char* separator) {
     std::string names;
-    for (const Provenance& part : parts)
-        if (names.size() + part.name.size() < kMaxName - 3)
-            names += (names.empty() ? "" : separator) + part.name;
-    return names;
+    for (const Provenance& part : parts) {
+        names += (names.empty() ? "" : separator) + part.name;
+        if (names.size() > kMaxName) break;
+    }
+    return shortened(std::move(names), kMaxName);
 }
 
 /// Refuses a file without a scene, and one with several.
@@ -239,7 +294,7 @@ std::string text_in_video(const std::string& path, OriginUse use) {
 Provenance provenance_of(const Scene& scene) {
     Provenance provenance;
     provenance.corda = version();
-    provenance.name = printable(scene.name);
+    provenance.name = shortened(printable(scene.name), kMaxName);
     provenance.fonts = view::fallback_names(shown_texts(scene));
     std::size_t particles = 0;
     for (const RopeDef& rope : scene.ropes) particles += rope.points_m.size();
@@ -281,27 +336,57 @@ std::string provenance_text(Provenance provenance) {
     if (provenance.picture &&
         (provenance.picture->times.size() > kMaxTimes || provenance.picture->film_times_s.size() > kMaxTimes))
         provenance.picture.reset();
-    const auto text_of = [&] {
-        return json_of(provenance).dump(-1, ' ', true, Json::error_handler_t::replace);
+    const auto text_of = [](const Json& json) {
+        return json.dump(-1, ' ', true, Json::error_handler_t::replace);
     };
-    if (provenance.left_out.size() > kMaxReason) provenance.left_out.resize(kMaxReason);
-    std::string text = text_of();
-    if (text.size() <= Provenance::kMaxBytes) return text;
-    leave_out(provenance, provenance.left_out);
-    const std::size_t others = text_of().size();
-    provenance.left_out = fmt::format("the scene takes {} bytes, more than {}", text.size() - others,
-                                      Provenance::kMaxBytes - std::min(others, Provenance::kMaxBytes));
-    text = text_of();
-    if (text.size() <= Provenance::kMaxBytes) return text;
+    const auto fits = [](const std::string& text) { return text.size() <= Provenance::kMaxBytes; };
+    provenance.left_out = shortened(provenance.left_out, kMaxReason);
+    std::string text = text_of(json_of(provenance));
+    if (fits(text)) return text;
+    std::string scenes;
+    for_each_scene(provenance, [&scenes](std::string& scene) {
+        (scenes += scene) += '\0';
+        scene.clear();
+    });
+    Json json = json_of(provenance);
+    const std::size_t others = std::min(text_of(json).size(), Provenance::kMaxBytes);
+    const char* const subject = provenance.parts.empty() ? "the scene takes" : "the scenes take";
+    if (scenes.size() > kMaxUnpacked) {
+        provenance.left_out = fmt::format("{} {} bytes, more than {}", subject, scenes.size(), kMaxUnpacked);
+    } else {
+        json[kPacked] = packed(scenes);
+        text = text_of(json);
+        if (fits(text)) return text;
+        provenance.left_out = fmt::format("{} {} compressed bytes, more than {}", subject,
+                                          text.size() - others, Provenance::kMaxBytes - others);
+    }
+    text = text_of(json_of(provenance));
+    if (fits(text)) return text;
     provenance.picture.reset();
-    return text_of();
+    if (!provenance.parts.empty()) {
+        provenance.left_out = fmt::format("the names of {} scenes take {} bytes, more than {}",
+                                          provenance.parts.size(), text.size(), Provenance::kMaxBytes);
+        provenance.parts.clear();
+        provenance.columns = 0;
+    }
+    return text_of(json_of(provenance));
+}
+
+std::string left_out_of(const std::string& text) {
+    std::vector<Provenance> all{parsed(text)};
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!all[i].left_out.empty()) return all[i].left_out;
+        const std::vector<Provenance> parts = std::move(all[i].parts);
+        all.insert(all.end(), parts.begin(), parts.end());
+    }
+    return "";
 }
 
 Provenance provenance_in(const PngInfo& info) {
     const std::string text = texts_in(info).provenance;
     if (text.empty() || text.size() > Provenance::kMaxBytes) return {};
     try {
-        return parsed(media::parse_untrusted_json(text));
+        return parsed(text);
     } catch (const std::exception&) {
         return {};
     }
@@ -325,7 +410,7 @@ Provenance read_provenance(const std::string& path, OriginUse use) {
     if (text.size() > 2 * Provenance::kMaxBytes) fail_at(path, "tells more than corda writes", use);
     Provenance provenance;
     try {
-        provenance = parsed(media::parse_untrusted_json(text));
+        provenance = parsed(text);
     } catch (const std::exception& error) {
         fail_at(
             path,

@@ -84,9 +84,13 @@ inline constexpr const char* kProvenanceKey = "provenance";
 /// The provenance of videos that were joined. Parts of a joined one become its own.
 [[nodiscard]] Provenance joined(const std::vector<Provenance>& videos);
 
-/// As a JSON object of at most kMaxBytes: without the scene, or without the picture, if they do not fit.
-/// Positions of a golden picture are the bits of their numbers in hexadecimal.
+/// As a JSON object of at most kMaxBytes. Scenes that do not fit are compressed; if that does not suffice,
+/// left out, and then also the picture and the parts. Positions of a golden picture are the bits of their
+/// numbers in hexadecimal.
 [[nodiscard]] std::string provenance_text(Provenance provenance);
+
+/// Why a file with such a text carries no scene, or not all of its parts; empty if it does.
+[[nodiscard]] std::string left_out_of(const std::string& text);
 
 /// Provenance in the texts of a PNG; without a name if there is none, or it is damaged.
 [[nodiscard]] Provenance provenance_in(const PngInfo& info);

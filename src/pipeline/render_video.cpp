@@ -40,8 +40,21 @@ std::map<std::string, std::string> origin_of(std::span<const Scene> panels, int 
                                              const media::Format& format, std::int64_t first,
                                              std::int64_t end) {
     std::map<std::string, std::string> origin = digest(panels.front());
-    for (std::size_t i = 1; i < panels.size(); ++i)
-        for (auto& [key, value] : digest(panels[i])) origin[fmt::format("panel {}: {}", i, key)] = value;
+    std::size_t room = std::size_t{16} << 10;  // chunks tell at most 64 KiB
+    for (std::size_t i = 1; i < panels.size(); ++i) {
+        std::map<std::string, std::string> its;
+        std::string text;
+        for (const auto& [key, value] : digest(panels[i])) {
+            its[fmt::format("panel {}: {}", i, key)] = value;
+            text += fmt::format("panel {}: {} = {}\n", i, key, value);
+        }
+        const bool has_room = text.size() <= room;
+        if (has_room)
+            origin.merge(its);
+        else
+            origin[fmt::format("panel {}", i)] = hashed(text);
+        room -= has_room ? text.size() : 0;
+    }
     if (panels.size() > 1) origin["panels"] = fmt::format("{} in {} columns", panels.size(), columns);
     origin["corda"] = version();
     origin["encoder"] = format.encoder_name();
@@ -360,9 +373,11 @@ Rendered render_video(std::span<Film> films, const CheckedOutput& output, const 
     }
     std::optional<CancelScope> resuming(
         std::in_place, [&] { report_progress(on_progress, 0, passes * (video.end - video.first)); });
-    media::VideoWriter writer(
-        video, metadata(panels, video.first, video.end,
-                        origin_of(panels.scenes, panels.columns, video.format, video.first, video.end)));
+    media::VideoMetadata data =
+        metadata(panels, video.first, video.end,
+                 origin_of(panels.scenes, panels.columns, video.format, video.first, video.end));
+    const nlohmann::json comment = nlohmann::json::parse(data.comment_json);
+    media::VideoWriter writer(video, std::move(data));
     resuming.reset();
     const OnProgress drawn = [&on_progress, passes](std::int64_t k, std::int64_t all) {
         return !on_progress || on_progress(k, passes * all);
@@ -371,6 +386,9 @@ Rendered render_video(std::span<Film> films, const CheckedOutput& output, const 
     result.resumed_frames = writer.frames();
     result.damaged_chunks = writer.damaged_chunks();
     result.encoder = video.format.encoder_name();
+    const media::FileKind kind = video.format.ending->kind;
+    if (kind == media::FileKind::kVideo || kind == media::FileKind::kPictures)
+        result.left_out = left_out_of(comment[kProvenanceKey].dump());
     try {
         write_frames(panels, video, drawn, writer, result);
         writer.finish(output.verifies_all() ? media::VerifyDepth::kAllFrames : media::VerifyDepth::kKeyFrames,

@@ -16,6 +16,7 @@ namespace {
 using test::read_file;
 using test::run_corda;
 using testing::HasSubstr;
+using testing::Not;
 
 class SeveralScenes : public testing::Test {
   protected:
@@ -84,6 +85,31 @@ TEST_F(SeveralScenes, InPanelsAreOneFilm) {
                    2, "panel 1: ");
     run(with({"--resume"}));
     expect_same("d.mp4", "c.mp4");
+}
+
+TEST_F(SeveralScenes, InPanelsAreAllCarriedByTheVideo) {
+    std::vector<std::string> command{"render", "--panels", "8x8", "--size", "256x192", "-o", file("a.mp4")};
+    for (int i = 0; i < 64; ++i)
+        command.push_back(scene("scene" + std::to_string(i), "0.2", "speed = \"1/2\"\n"));
+    for (const std::vector<std::string>& how :
+         std::vector<std::vector<std::string>>{{"--shard", "0/2"}, {"--resume"}}) {
+        std::vector<std::string> words = command;
+        words.insert(words.end(), how.begin(), how.end());
+        const auto result = run_corda(words);
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_THAT(result.err, Not(HasSubstr("warning")));
+    }
+    run({"render", "--from", file("a.mp4"), "-o", file("b.mp4")});
+    expect_same("a.mp4", "b.mp4");
+    EXPECT_THAT(run_corda({"verify", file("a.mp4")}).out, HasSubstr(", at speed 1/2"));
+}
+
+TEST_F(SeveralScenes, InPanelsMayHaveLongNames) {
+    const std::string a = scene(std::string(240, 'a'), "0.2");
+    const std::string b = scene(std::string(240, 'b'), "0.2");
+    run({"render", a, b, "--panels", "2x1", "-o", file("a.mp4")});
+    run({"render", "--from", file("a.mp4"), "-o", file("b.mp4")});
+    expect_same("a.mp4", "b.mp4");
 }
 
 TEST_F(SeveralScenes, InPanelsHaveTheSizeOfTheFirstEach) {

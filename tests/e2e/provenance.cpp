@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "corda/media/defs.hpp"
@@ -186,22 +189,50 @@ TEST_F(ProvenanceOfFiles, DamagedProvenanceIsRefused) {
         bad.replace(bad.find(from), from.size(), to);
         EXPECT_EQ(code_of(bad), 2) << bad;
     }
+    // Those of panels, which `render` alone lays out.
+    const std::string panel = R"({"corda":"0.1.0","name":"a","scene":"schema = 1"})";
+    std::string many = panel;
+    for (int i = 0; i < 64; ++i) many += "," + panel;
+    for (const std::string& parts : std::vector<std::string>{
+             R"("columns":1,"parts":[])", R"("columns":2147483647,"parts":[])", R"("columns":1.5,"parts":{})",
+             R"("columns":2)", R"("columns":2,"parts":[)" + panel + "]",
+             R"("columns":1,"parts":[)" + many + "]", R"("packed_scenes":"")", R"("packed_scenes":1)",
+             R"("packed_scenes":"eJwBAAD//wAAAAE=")"}) {
+        write_png(folder().file("bad.png"), Image(8, 8),
+                  {.text = {{"Provenance", R"({"corda":"0.1.0","name":"a",)" + parts + "}"}}},
+                  {.force = true});
+        const auto result = run_corda({"render", "--from", folder().file("bad.png"), "--size", "100x100",
+                                       "-o", folder().file("x.mp4")});
+        EXPECT_EQ(result.exit_code, 2) << parts;
+        EXPECT_THAT(result.err, HasSubstr("in a way that is damaged")) << parts;
+    }
     std::string scene = sound;
     scene.replace(scene.find("particles = 3"), 13, "particles = 1");
     EXPECT_EQ(code_of(scene), 3);
 }
 
 TEST_F(ProvenanceOfFiles, ExplainsWhyALargeSceneIsNotStored) {
-    std::string points;
-    for (int i = 0; i < 3000; ++i) points += "[" + std::to_string(0.1 * i * i / 7.0) + ", -1.5], ";
-    const std::string large = folder().write(
-        "large.toml",
-        "schema = 1\nworld = { duration = 0.1 }\n[[rope]]\npoints = [" + points +
-            "]\n[video]\nsize = [64, 48]\nfps = 30\n[solver]\nmethod = \"rattle\"\nstep = 0.03\n");
+    const auto scene_of = [&](int particles) {
+        std::string points;
+        for (int i = 0; i < particles; ++i)
+            points +=
+                fmt::format("[{}, {}], ", std::to_string(0.1 * i * i / 7.0), std::to_string(std::sin(i)));
+        return folder().write(
+            "large.toml",
+            "schema = 1\nworld = { duration = 0.1 }\n[[rope]]\npoints = [" + points +
+                "]\n[video]\nsize = [64, 48]\nfps = 30\n[solver]\nmethod = \"rattle\"\nstep = 0.03\n");
+    };
+    run({"still", scene_of(1500), "--frame", "0", "-o", folder().file("c.png")});  // 40 KB of text
+    run({"still", "--from", folder().file("c.png"), "-o", folder().file("d.png")});
+    expect_same("c.png", "d.png");
+    const std::string large = scene_of(6000);
     run({"still", large, "--frame", "0", "-o", folder().file("a.png")});
     const auto result = run_corda({"still", "--from", folder().file("a.png"), "-o", folder().file("b.png")});
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_THAT(result.err, HasSubstr("does not carry its scene, because the scene takes"));
+    const auto film = run_corda({"render", large, "--frames", "0:1", "-o", folder().file("a.mp4")});
+    EXPECT_EQ(film.exit_code, 0);
+    EXPECT_THAT(film.err, HasSubstr("--from cannot repeat the output, because the scene takes"));
 }
 
 }  // namespace
