@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "corda/sim/solver.hpp"
+#include "corda/view/scene_view.hpp"
 
 namespace corda::scene {
 namespace {
@@ -122,12 +123,12 @@ double expected_bytes(const BodySize& size, const SolverDef& solver, bool is_net
            kPerBar * static_cast<double>(size.bars);
 }
 
-/// Estimated upper bound of the memory, in bytes, for the trail of a rope: a point per frame, at most 400 in
-/// a trail, and in a picture 4 capsules per point.
-double trail_bytes(const Scene& scene) {
+/// Estimated upper bound of the memory, in bytes, for the trails of a body: a point per frame, at most 400 in
+/// a trail, and in a picture the capsules of trails beyond view::kPiecesOfTrails.
+double trail_bytes(const Scene& scene, std::int64_t particles) {
     if (scene.style.trail_s == 0.0) return 0.0;
     constexpr double kPerPoint = 2.0 * 40.0;  // a vector that grows has as much again
-    constexpr double kPerPointInPicture = 2.0 * 4.0 * 36.0;
+    constexpr double kPerPointInPicture = 2.0 * view::kMinPiecesPerPoint * view::kCapsuleBytes;
     constexpr double kMaxPoints = 400.0;
     const double in_trail = scene.style.trail_s * scene.video.scene_rate().per_second();
     const double stride = std::max(1.0, in_trail / kMaxPoints);
@@ -135,7 +136,9 @@ double trail_bytes(const Scene& scene) {
     const double frames = std::min(scene.world.duration_s * scene.video.scene_rate().per_second(),
                                    static_cast<double>(Limits::kFrames));
     const double points = frames / stride;
-    const double trails = std::max(1.0, static_cast<double>(scene.style.trail_of.size()));
+    // Two indices can name one particle.
+    const auto trails =
+        static_cast<double>(std::clamp<std::int64_t>(std::ssize(scene.style.trail_of), 1, particles));
     return trails * (kPerPoint * points + kPerPointInPicture * std::min({in_trail, points, kMaxPoints}));
 }
 
@@ -348,6 +351,7 @@ double cost_of_elastic_net(const Body& body, const SolverDef& solver) {
 SceneSize count_bodies(const Sections& sections, const SolverSection& solver, const Scene& scene) {
     SceneSize size;
     Demand all;
+    if (scene.style.trail_s > 0.0) all.bytes = 2.0 * view::kPiecesOfTrails * view::kCapsuleBytes;
     size.has_bars = sections.solver.is_sound("method") && sections.solver.is_sound("reach") &&
                     sections.solver.is_sound("bodies");
     const auto add = [&](const TableReader& body, const std::optional<BodySize>& own,
@@ -355,7 +359,8 @@ SceneSize count_bodies(const Sections& sections, const SolverSection& solver, co
         const SolverDef& method = solver.group_of(size.bodies.size()).def;
         size.bodies.push_back(own);
         size.has_bars = size.has_bars && own;
-        const double of_trail = is_net && scene.style.trail_of.empty() ? 0.0 : trail_bytes(scene);
+        const double of_trail =
+            !own || (is_net && scene.style.trail_of.empty()) ? 0.0 : trail_bytes(scene, own->particles);
         if (size.fits && own)
             size.fits = add_size(body, *own, expected_bytes(*own, method, is_net) + of_trail, of_trail > 0.0,
                                  fewer_bars, all);

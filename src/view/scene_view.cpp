@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "corda/core/basics.hpp"
 #include "corda/view/draw_list.hpp"
 
 namespace corda::view {
@@ -47,6 +48,24 @@ double ball_radius(double mass_kg, double rope_kg) {
     return std::min(kMinBall * cube_root(ratio), kMaxBall);
 }
 
+std::vector<std::size_t> traced_by(const StyleDef& style, const System& system) {
+    if (style.trail_s == 0.0) return {};
+    if (style.trail_of.empty()) return free_ends(system);
+    std::vector<std::size_t> particles;
+    std::vector<bool> is_traced(system.particle_count());
+    for (const Body& body : system.bodies) {
+        const auto count = static_cast<std::int64_t>(body.particle_count);
+        for (const std::int64_t i : style.trail_of) {
+            if (i < -count || i >= count) continue;
+            const std::size_t particle =
+                body.first_particle + static_cast<std::size_t>(i < 0 ? i + count : i);
+            if (!is_traced[particle]) particles.push_back(particle);
+            is_traced[particle] = true;
+        }
+    }
+    return particles;
+}
+
 Drawn around(const MotionBounds& bounds, double radius_px) {
     return {bounds, radius_px, radius_px, radius_px, radius_px};
 }
@@ -78,6 +97,7 @@ SceneView::SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& st
       height_(height),
       side_px_(std::min(width, height)),
       rope_width_px_(style.rope_width_px.value_or(std::max(kMinLineWidthPx, kRopeWidth * side_px_))),
+      traced_(traced_by(style, system)),
       arrows_(system, gravity_m_s2, style, side_px_) {
     const double net_width_px =
         style.net_width_px.value_or(style.rope_width_px ? kNetWidthPerRopeWidth * rope_width_px_
@@ -271,38 +291,27 @@ void SceneView::include_slack(const Body& body, std::span<const MotionBounds> mo
     }
 }
 
-std::vector<std::size_t> SceneView::traced() const {
-    if (style_.trail_s == 0.0) return {};
-    if (style_.trail_of.empty()) return free_ends(*system_);
-    std::vector<std::size_t> particles;
-    for (const Body& body : system_->bodies) {
-        const auto count = static_cast<std::int64_t>(body.particle_count);
-        for (const std::int64_t i : style_.trail_of) {
-            if (i >= -count && i < count)
-                particles.push_back(body.first_particle + static_cast<std::size_t>(i < 0 ? i + count : i));
-        }
-    }
-    return particles;
-}
-
 void SceneView::draw_trails(std::span<const Trail> trails, const Camera& camera, DrawList& list) const {
     if (trails.empty()) return;
-    const std::vector<std::size_t> particles = traced();
+    double points = 1.0;
+    for (const Trail& trail : trails) points += static_cast<double>(trail.size());
+    const double max_pieces = std::clamp(kPiecesOfTrails / points, kMinPiecesPerPoint, kMaxPiecesPerPoint);
     const double slope_px = style_.trail_s * camera.pixels_per_metre();
     std::vector<FadingPoint> path;
     std::size_t b = 0;
-    for (std::size_t i = 0; i < particles.size(); ++i) {
-        while (particles[i] >= system_->bodies[b].first_particle + system_->bodies[b].particle_count) ++b;
+    for (std::size_t i = 0; i < traced_.size(); ++i) {
+        check_cancelled();
+        while (traced_[i] >= system_->bodies[b].first_particle + system_->bodies[b].particle_count) ++b;
         path.clear();
         for (const auto& [age_s, at_m, velocity_m_s] : trails[i])
             path.push_back({{camera.x_px(at_m.x), camera.y_px(at_m.y)},
                             1.0 - age_s / style_.trail_s,
                             {slope_px * velocity_m_s.x, -slope_px * velocity_m_s.y}});
         const Body& body = system_->bodies[b];
-        const std::size_t number = std::max<std::size_t>(particles[i] - body.first_particle, 1);
+        const std::size_t number = std::max<std::size_t>(traced_[i] - body.first_particle, 1);
         const std::size_t link = body.first_bar + std::min(number, body.link_count) - 1;
         add_trail(path, std::max(kMinTrailRadiusPx, kTrailPerLine * link_radius_px(b, link)),
-                  bodies_[b].color, list);
+                  bodies_[b].color, list, max_pieces);
     }
 }
 

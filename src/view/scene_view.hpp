@@ -35,10 +35,17 @@ struct FadingPoint {
     PixelPoint slope;  ///< change of `at` per unit of `left`
 };
 
+/// Capsules in a picture for all its trails. Many points have fewer each, down to the least.
+inline constexpr double kPiecesOfTrails = 1 << 20;
+inline constexpr double kMinPiecesPerPoint = 4.0;
+inline constexpr double kMaxPiecesPerPoint = 64.0;
+inline constexpr double kCapsuleBytes = sizeof(Capsule);
+
 /// Adds the cubics through the points of a path, which must differ in age, with their slopes. The curve fades
 /// in alpha and width; where it crosses itself, the younger part shows. `radius_px` is the radius at the
-/// young end.
-void add_trail(std::span<const FadingPoint> points, double radius_px, Color color, DrawList& list);
+/// young end. Between two points there are at most `max_pieces` capsules.
+void add_trail(std::span<const FadingPoint> points, double radius_px, Color color, DrawList& list,
+               double max_pieces = kMaxPiecesPerPoint);
 
 /// One free end per open rope that has one, preferably the last particle.
 [[nodiscard]] std::vector<std::size_t> free_ends(const System& system);
@@ -91,8 +98,8 @@ class SceneView {
     /// A label of a particle: beyond the end of a rope, otherwise above it.
     [[nodiscard]] BodyLabel label_at(std::size_t particle, std::string text) const;
 
-    /// The particles whose paths are drawn, body by body; none without trails.
-    [[nodiscard]] std::vector<std::size_t> traced() const;
+    /// The particles whose paths are drawn, body by body, each once; none without trails.
+    [[nodiscard]] const std::vector<std::size_t>& traced() const { return traced_; }
 
     /// Writes the frame of `state` to `list`, with a trail for each of the particles traced(), or none.
     /// Memory that `list` holds is reused.
@@ -170,6 +177,7 @@ class SceneView {
     int height_;
     double side_px_;  ///< the shorter one
     double rope_width_px_;
+    std::vector<std::size_t> traced_;
     std::vector<BodyLook> bodies_;
     std::size_t ball_count_ = 0;
     Supports supports_;

@@ -11,7 +11,6 @@ constexpr double kYoungAlpha = 0.8;      // of the body's
 constexpr double kOldWidth = 0.4;        // of the young end's
 constexpr double kShades = 64.0;         // from the old end to the young one, at least
 constexpr double kMaxDeviationPx = 0.1;  // of a polygon from the curve
-constexpr double kMaxPieces = 64.0;      // between two points
 constexpr double kShortestPiecePx = 0.5;
 
 Vec2 vector(PixelPoint point) {
@@ -24,7 +23,8 @@ double length(Vec2 way) {
 
 }  // namespace
 
-void add_trail(std::span<const FadingPoint> points, double radius_px, Color color, DrawList& list) {
+void add_trail(std::span<const FadingPoint> points, double radius_px, Color color, DrawList& list,
+               double max_pieces) {
     color.a = static_cast<std::uint8_t>(std::lround(kYoungAlpha * color.a));
     list.add_layer(color);
     FadingPoint from = points.empty() ? FadingPoint{} : points.front();
@@ -42,7 +42,7 @@ void add_trail(std::span<const FadingPoint> points, double radius_px, Color colo
         // A polygon of n pieces deviates by at most 1/8 of the second derivative over n^2.
         const double bend_px = std::max(length(a - 2.0 * b + c), length(b - 2.0 * c + d));
         const double needed = std::max(std::sqrt(0.75 * bend_px / kMaxDeviationPx), kShades * step);
-        const int pieces = static_cast<int>(std::ceil(std::clamp(needed, 1.0, kMaxPieces)));
+        const int pieces = static_cast<int>(std::ceil(std::clamp(needed, 1.0, max_pieces)));
         for (int k = 1; k <= pieces; ++k) {
             const double t = 1.0 * k / pieces;
             const double u = 1.0 - t;

@@ -192,6 +192,12 @@ TEST(SceneLimits, MemoryOfTrails) {
     // 360 kB of points and 104 kB in a picture, for each.
     expect_limit(long_motion + "[style]\ntrail_s = 6.0\n" + ropes, "swing.toml:", "no style.trail_s");
     EXPECT_NO_THROW(std::ignore = parse_scene(long_motion + "[style]\ntrail_s = 0.5\n" + ropes, "a"));
+    std::string twice = "0";  // two particles, however often they are named
+    for (int i = 0; i < 4000; ++i) twice += ", -1";
+    EXPECT_NO_THROW(std::ignore = parse_scene(
+                        "schema = 1\n[world]\nduration = 600.0\n[style]\ntrail_s = 0.5\ntrail_of = [" +
+                            twice + "]\n[[rope]]\nline = { particles = 2, step = [0.1, -1.0] }\n",
+                        "a"));
 }
 
 TEST(SceneLimits, FileSize) {

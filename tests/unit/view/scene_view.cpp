@@ -409,6 +409,8 @@ TEST(SceneView, TracesTheFreeEndsOrGivenParticlesOfEachBody) {
     EXPECT_EQ(traced(), (std::vector<std::size_t>{2, 8}));
     style.trail_of = {1, -1, 4, -6};
     EXPECT_EQ(traced(), (std::vector<std::size_t>{1, 2, 4, 8, 7, 3}));
+    style.trail_of = {-1, 2, 2, 5};
+    EXPECT_EQ(traced(), (std::vector<std::size_t>{2, 8, 5}));
     style.trail_s = 0.0;
     EXPECT_TRUE(traced().empty());
 }

@@ -75,6 +75,16 @@ TEST(Trails, StayNearTheirPointsAtAPeakOfSpeed) {
     for (const Capsule& piece : list.capsules) EXPECT_NEAR(piece.ay, 100.0F, 5.0F);  // measured 4.4
 }
 
+TEST(Trails, TakeNoMorePiecesThanTheirShare) {
+    const std::vector<FadingPoint> path = circle({0.0, 0.3, 0.6, 0.9});
+    for (const double most : {4.0, 10.0}) {
+        DrawList list;
+        list.width = list.height = 400;
+        add_trail(path, 1.0, {}, list, most);
+        EXPECT_EQ(list.capsules.size(), static_cast<std::size_t>(3.0 * most));
+    }
+}
+
 TEST(Trails, OfOnePointAreEmpty) {
     EXPECT_TRUE(trail_of({{{50.0, 50.0}, 1.0, {}}}).capsules.empty());
     EXPECT_TRUE(trail_of({}).capsules.empty());
