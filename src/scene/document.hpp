@@ -35,12 +35,13 @@ struct KeyStep {
     friend bool operator==(const KeyStep&, const KeyStep&) = default;
 };
 
-/// The parts of a dotted key such as "rope[0].mass"; std::nullopt for any other text.
+/// The parts of a dotted key such as "rope[0].mass", with spaces around it or not; std::nullopt for any other
+/// text.
 [[nodiscard]] std::optional<std::vector<KeyStep>> parse_key(std::string_view key);
 
-/// Puts `setting` into the document, making missing tables on its way. What it puts there has the setting
-/// itself, or `place`, as its source, so that messages about it name that. One that does not fit the document
-/// is a problem. Throws corda::Error (kUsage) if it is not key=value.
+/// Puts `setting` into the document, making missing tables on its way. What it puts there has `place`,
+/// by default --set, and the setting as its source, so that messages about it name them. One that does not
+/// fit the document is a problem. Throws corda::Error (kUsage) if it is not key=value.
 void apply_setting(toml::table& document, const Setting& setting, Problems& problems,
                    const std::string& place = "");
 

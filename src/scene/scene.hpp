@@ -138,7 +138,8 @@ using Setting = std::string;
 /// check_cancelled() is called some ten times a second in a scene of a million particles.
 [[nodiscard]] Scene load_scene(const std::string& path, const std::vector<Setting>& settings = {});
 
-/// Settings that do not come from the command line; messages name `place` in place of --set.
+/// Settings that do not come from the command line; messages name `place` before them in place of
+/// --set.
 struct PlacedSettings {
     std::string place;
     std::vector<Setting> settings;

@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t kMaxLabel = 80;
 constexpr std::string_view kWhitespace = " \t\r\n";
 
-std::string label_of(const Setting& setting) {
-    return "--set " + excerpt(setting, kMaxLabel);
+std::string label_of(const std::string& place, const Setting& setting) {
+    return (place.empty() ? "--set " : place + " ") + excerpt(setting, kMaxLabel);
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -147,7 +147,7 @@ class SettingWriter {
 
 std::optional<std::vector<KeyStep>> parse_key(std::string_view key) {
     std::vector<KeyStep> steps;
-    std::string_view rest = key;
+    std::string_view rest = trimmed(key);
     while (true) {
         const auto name = take_name(rest);
         if (!name) return std::nullopt;
@@ -165,7 +165,7 @@ std::optional<std::vector<KeyStep>> parse_key(std::string_view key) {
 
 void apply_setting(toml::table& document, const Setting& setting, Problems& problems,
                    const std::string& place) {
-    const std::string label = place.empty() ? label_of(setting) : place;
+    const std::string label = label_of(place, setting);
     const auto refuse = [&](std::string_view problem) {
         const char* const advice =
             place.empty() ? "; give --set key=value, e.g. --set video.fps=30 or --set rope[0].mass=2" : "";

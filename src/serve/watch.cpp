@@ -11,6 +11,7 @@
 #include <numbers>
 #include <regex>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "corda/core/cancel.hpp"
@@ -19,6 +20,7 @@
 #include "corda/media/png/png.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/pipeline/tracked_particle.hpp"
+#include "corda/scene/document.hpp"
 #include "corda/scene/read_file.hpp"
 #include "embedded_page.hpp"
 
@@ -49,6 +51,14 @@ Json problems_of(const std::string& message, const std::string& name) {
         problems.push_back(std::move(problem));
     }
     return problems;
+}
+
+/// True if a setting gives the value of this key, or of a table or list that the key lies in.
+bool sets(const Setting& setting, const std::string& key) {
+    const auto inner = scene::parse_key(key);
+    const auto outer = scene::parse_key(std::string_view(setting).substr(0, setting.find('=')));
+    return inner && outer && outer->size() <= inner->size() &&
+           std::equal(outer->begin(), outer->end(), inner->begin());
 }
 
 Json json_of(const SceneNumber& number, const NumberChanges& changes) {
@@ -462,8 +472,7 @@ Response Watch::write_file() {
                 changes_.erase(now);
             for (SceneNumber& number : numbers_)
                 if (number.key == key) number.value = value;
-            const std::string start = key + "=";
-            std::erase_if(def_.settings, [&](const Setting& setting) { return setting.starts_with(start); });
+            std::erase_if(def_.settings, [&its = key](const Setting& setting) { return sets(setting, its); });
         }
     }
     reload();
