@@ -81,22 +81,25 @@ struct Subject {
 /// A state, and what several plots show of it.
 struct Sample {
     const State& state;
-    Energy energy;
+    const std::function<Energy(const State&)>& energy_of;
     std::vector<CurvePoint> turns;  ///< see turning_of(); one per particle of Subject::turning
 };
 
-/// One kind of plot: its axes and empty curves, and the values that a sample adds to the curves: the y of
-/// each over time, otherwise x and y.
+/// One kind of plot: the fields that it needs of states, its axes and empty curves, and the values that a
+/// sample adds to the curves: the y of each over time, otherwise x and y.
 struct Kind {
+    StateFields fields;
     PlotData (*axes)(const Subject& subject);
     std::vector<CurvePoint> (*values)(const Subject& subject, const Sample& sample);
 };
 
+constexpr StateFields kVelocities{.velocities = true};
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// In the order of LivePlot.
 constexpr Kind kKinds[] = {
-    {[](const Subject& subject) -> PlotData {
+    {kVelocities,
+     [](const Subject& subject) -> PlotData {
          using Hue = PlotData::Hue;
          const double speed_m_s = subject.size_m / subject.end_s;
          return {{"t", "s"},
@@ -107,12 +110,12 @@ constexpr Kind kKinds[] = {
                   {subject.word("total"), Hue::kText}}};
      },
      [](const Subject&, const Sample& sample) -> std::vector<CurvePoint> {
-         const double potential_j = sample.energy.potential_j();
-         return {{.y = sample.energy.kinetic_j},
-                 {.y = potential_j},
-                 {.y = sample.energy.kinetic_j + potential_j}};
+         const Energy energy = sample.energy_of(sample.state);
+         const double potential_j = energy.potential_j();
+         return {{.y = energy.kinetic_j}, {.y = potential_j}, {.y = energy.kinetic_j + potential_j}};
      }},
-    {[](const Subject& subject) -> PlotData {
+    {kVelocities,
+     [](const Subject& subject) -> PlotData {
          return {{"t", "s"}, {subject.word("angle"), "°", kStill, "φ"}, subject.end_s, subject.curves()};
      },
      [](const Subject&, const Sample& sample) {
@@ -120,7 +123,8 @@ constexpr Kind kKinds[] = {
          for (const CurvePoint& turn : sample.turns) values.push_back({.y = kDegrees * turn.x});
          return values;
      }},
-    {[](const Subject& subject) -> PlotData {
+    {kVelocities,
+     [](const Subject& subject) -> PlotData {
          const double least = kStill / kDegrees;
          return {{subject.word("angle"), "rad", least, "φ"},
                  {subject.word("angular velocity"), "rad/s", least / subject.end_s, "ω"},
@@ -128,7 +132,8 @@ constexpr Kind kKinds[] = {
                  subject.curves()};
      },
      [](const Subject&, const Sample& sample) { return sample.turns; }},
-    {[](const Subject& subject) -> PlotData {
+    {{},
+     [](const Subject& subject) -> PlotData {
          const std::string name = subject.name_of(0) + " – " + subject.name_of(1);
          return {{"t", "s"},
                  {subject.word("distance of the tips"), "m", 0.0, subject.word("distance"), true},
@@ -141,7 +146,8 @@ constexpr Kind kKinds[] = {
          const std::size_t b = subject.tips[1];
          return {{.y = sim::length(state.x_m[a] - state.x_m[b], state.y_m[a] - state.y_m[b])}};
      }},
-    {[](const Subject& subject) -> PlotData {
+    {{},
+     [](const Subject& subject) -> PlotData {
          const std::size_t tip = tip_of(subject.system);
          const std::string x = subject.system.bodies.size() > 1
                                    ? fmt::format(fmt::runtime(subject.word("x of {}")),
@@ -177,6 +183,12 @@ void raise_zeros(double size_m, PlotData& data) {
 
 }  // namespace
 
+StateFields LivePlotData::readings() const {
+    StateFields fields{.velocities = scene_->overlay.energy};
+    for (const LivePlot plot : scene_->overlay.plots) fields = fields.with(kind_of(plot).fields);
+    return fields;
+}
+
 std::vector<double> LivePlotData::times_s() const {
     if (scene_->overlay.plots.empty()) return {};
     constexpr std::size_t kNumbersPerParticle = 4;
@@ -199,12 +211,12 @@ std::vector<PlotData> LivePlotData::read(const std::vector<MethodDef>& methods, 
     const FrameRate fps = scene_->video.scene_rate();
     const Timeline timeline(fps, fps.last_frame_within(scene_->world.duration_s), times_s());
     const std::size_t stride = timeline.size() / kMaxSamples + 1;
+    const StateFields fields = readings();
     std::vector<CurvePoint> turns;
     for (std::size_t i = 0; i < timeline.size() && timeline.time_s(i) <= end_s; i += stride) {
         const State& state = state_at(timeline.time_s(i));
-        Sample sample{state, {}, {}};
-        sample.energy = energy_of(state);
-        for (std::size_t k = 0; k < subject.turning.size(); ++k)
+        Sample sample{state, energy_of, {}};
+        for (std::size_t k = 0; fields.velocities && k < subject.turning.size(); ++k)
             sample.turns.push_back(
                 turning_of(subject.turning[k], state, turns.empty() ? nullptr : &turns[k]));
         turns = sample.turns;

@@ -16,9 +16,7 @@ class LivePlotData {
     LivePlotData(const Scene& scene, const System& system) : scene_(&scene), system_(&system) {}
 
     /// Fields that states must have, for `overlay.energy` too.
-    [[nodiscard]] StateFields readings() const {
-        return {.velocities = scene_->overlay.energy || !scene_->overlay.plots.empty()};
-    }
+    [[nodiscard]] StateFields readings() const;
     /// Times between frames at which to record states, so that the curves do not depend on the frame rate.
     /// Empty without plots.
     [[nodiscard]] std::vector<double> times_s() const;

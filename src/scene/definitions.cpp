@@ -35,6 +35,7 @@ std::vector<DefProblem> problems_of(const OverlayTextDef& text) {
 
 std::vector<DefProblem> problems_of(const OverlayDef& overlay, const std::vector<RopeDef>& ropes) {
     const auto has_one_pin = [](const RopeDef& rope) { return rope.pinned.size() == 1 && !rope.closed; };
+    const auto moves = [](const RopeDef& rope) { return rope.pinned.size() < rope.points_m.size(); };
     const bool has_angle = std::any_of(ropes.begin(), ropes.end(), has_one_pin);
     const std::vector<LivePlot>& plots = overlay.plots;
     std::vector<DefProblem> problems;
@@ -48,6 +49,9 @@ std::vector<DefProblem> problems_of(const OverlayDef& overlay, const std::vector
         if (*now == LivePlot::kDivergence && ropes.size() < 2)
             add("it is the distance of the tips of ropes 0 and 1, and there are not two ropes; give "
                 "another [[rope]] or rope.copies, or remove this plot");
+        else if (*now == LivePlot::kDivergence && !(moves(ropes[0]) && moves(ropes[1])))
+            add("it is the distance of the tips of ropes 0 and 1, and all particles of one of them are "
+                "pinned; pin fewer, give ropes that move first, or remove this plot");
     }
     return problems;
 }

@@ -189,14 +189,30 @@ TEST(FilmPlot, RefusesWhatTheSceneDoesNotHave) {
         EXPECT_NE(failure.message.find(problem), std::string::npos) << failure.message;
     };
     const std::string free = "points = [[0.0, 0.0], [1.0, 0.0]]\npinned = []";
+    constexpr const char* kPinned = "points = [[0.0, 0.0], [1.0, 0.0]]\npinned = [0, 1]";
     const std::string closed = "points = [[0.0, 0.0], [1.0, 0.0], [0.5, -1.0]]\nclosed = true";
     refuse("[\"angle\"]", free, "plot.toml:6:10: overlay.plots[0]: no rope has one pinned particle");
     refuse("[\"tip\", \"phase\"]", closed,
            "plot.toml:6:17: overlay.plots[1]: no rope has one pinned particle");
     refuse("[\"divergence\"]", free, "overlay.plots[0]: it is the distance of the tips of ropes 0 and 1");
+    for (const auto& [first, second] :
+         {std::pair(free, std::string(kPinned)), std::pair(std::string(kPinned), free)})
+        refuse("[\"divergence\"]", first + "\n[[rope]]\n" + second,
+               "all particles of one of them are pinned; pin fewer");
     refuse("[\"tip\", \"tip\"]", free, "overlay.plots[1]: the same plot twice");
     refuse("\"tip\"", free, "overlay.plots");
     refuse("[\"tips\"]", free, "did you mean \"tip\"?");
+}
+
+TEST(FilmPlot, ReadsVelocitiesOnlyForWhatShowsThem) {
+    for (const auto& [plot, has_velocities] : {std::pair("energy", true), std::pair("angle", true),
+                                               std::pair("phase", true), std::pair("tip", false)}) {
+        Film film(plotted_scene(plot));
+        EXPECT_FALSE(plot_of(film).curves.at(0).points.empty()) << plot;
+        EXPECT_EQ(film.state(3).vx_m_s.empty(), !has_velocities) << plot;
+    }
+    const Scene both = plotted_scene("tip", {"overlay.energy=true"});
+    EXPECT_FALSE(Film(both).state(3).vx_m_s.empty());
 }
 
 TEST(FilmPlot, DoesNotChangeTheMotionAndSimulatesItOnce) {
