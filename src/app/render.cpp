@@ -21,6 +21,7 @@
 #include "corda/media/format/file_kind.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/pipeline/film.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/view/colors.hpp"
 #include "interrupt.hpp"
@@ -298,6 +299,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
         return !on_progress || on_progress(done, all);
     };
     options.gl.apply_to(film_def);
+    film_def.motion_budget_bytes /= scenes.size();
     std::vector<Film> films = make_films(console, scenes, output, film_def);
     if (options.dry_run) {
         console.report(films_json(films));
@@ -326,7 +328,14 @@ ExitCode render(const Console& console, const RenderOptions& options) {
         console.result(def.shard ? media::parts_path(options.output) : options.output);
     console.report(report(films, video, options, rendered, wall_s, gl.renderer));
     const EmptyPictures empty{options.empty.are_failures, rendered.empty_frames, rendered.first_empty_s};
-    return empty.report(console, rendered.frames, films.front().scene().camera);
+    const std::int64_t k = films.front().scene().video.scene_rate().last_frame_within(rendered.first_empty_s);
+    const auto is_empty = [k](Film& film) {
+        return FilmRenderer::is_empty(film, film.time_s(std::min(k, film.frame_count() - 1)));
+    };
+    const auto shown =
+        rendered.empty_frames > 0 ? std::find_if(films.begin(), films.end(), is_empty) : films.end();
+    return empty.report(console, rendered.frames,
+                        (shown == films.end() ? films.front() : *shown).scene().camera);
 }
 
 }  // namespace

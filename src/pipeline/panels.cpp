@@ -29,6 +29,13 @@ int rows_of(std::size_t scenes, int columns) {
 
 void lay_out_panels(std::span<Scene> scenes, int columns, int width_px, int height_px) {
     const int rows = rows_of(scenes.size(), columns);
+    const auto has_room = [](int count, int side_px) { return count == 1 || side_px >= 2 * count; };
+    if (!has_room(columns, width_px) || !has_room(rows, height_px))
+        throw Error(
+            ExitCode::kUsage,
+            fmt::format("{}x{} panels (--panels) have no room in {}x{} pixels (--size); give a size of "
+                        "at least {}x{}, or fewer panels",
+                        columns, rows, width_px, height_px, 2 * columns, 2 * rows));
     for (int i = 0; i < columns * rows; ++i) {
         VideoDef& video = scenes[static_cast<std::size_t>(i)].video;
         video.width_px = share_px(i % columns, columns, width_px);

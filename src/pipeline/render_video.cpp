@@ -115,8 +115,8 @@ media::VideoMetadata metadata(const pipeline::Panels& panels, std::int64_t first
 }
 
 /// Refuses a video for which memory does not suffice, before the system kills a process.
-void check_memory(const media::Format& format, const VideoDef& video) {
-    const std::uint64_t bytes = media::bytes_per_job(format, video);
+void check_memory(const media::Format& format, const VideoDef& video, std::size_t panels) {
+    const std::uint64_t bytes = media::bytes_per_job(format, video, panels);
     if (media::jobs_that_fit(1, bytes) == 1) return;
     const bool can_be_faster =
         !format.codec->preset_job_bytes.empty() && format.preset_of(video.encoder) != "ultrafast";
@@ -240,7 +240,8 @@ void write_frames(const Panels& panels, const media::CheckedVideo& video, const 
     const int wanted =
         static_cast<int>(std::min<std::int64_t>(media::jobs_of(video.def.encoder.jobs), std::ssize(lacking)));
     if (wanted > 1 && panels.can_draw_in_any_order(video.end)) {
-        const int jobs = media::jobs_that_fit(wanted, media::bytes_per_job(writer.format(), video.def));
+        const int jobs = media::jobs_that_fit(
+            wanted, media::bytes_per_job(writer.format(), video.def, panels.films.size()));
         result.is_short_of_memory = jobs < wanted;
         result.jobs = std::max(1, jobs);
     }
@@ -293,7 +294,7 @@ media::CheckedVideo check_video(std::span<const Scene> panels, int columns, cons
                                                            .shard = def.shard},
                                                           input, !are_opaque(panels));
     for (const Scene& scene : panels) check_ground(scene, video.format);
-    check_memory(video.format, video.def);
+    check_memory(video.format, video.def, panels.size());
     const bool continues = def.resume || def.shard;
     const std::uint64_t there = continues ? media::bytes_of(media::chunk_files(media::parts_path(path))) : 0;
     media::check_disk_space(video.format, path, video.def, end - def.first, there);

@@ -16,6 +16,7 @@ namespace {
 
 using pipeline::PanelRenderer;
 using pipeline::Panels;
+using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -78,6 +79,14 @@ TEST(Panels, ShareThePictureWithEvenEdges) {
     EXPECT_THAT(widths_of(3, 1280), ElementsAre(426, 426, 428));
     EXPECT_THAT(widths_of(2, 131), ElementsAre(64, 67));
     EXPECT_THAT(widths_of(1, 131), ElementsAre(131));
+}
+
+TEST(Panels, WithoutRoomAreRefused) {
+    EXPECT_THAT(widths_of(24, 48), Each(2));
+    EXPECT_THAT(widths_of(1, 1), ElementsAre(1));
+    const test::Failure failure = test::failure_of([] { widths_of(24, 47); });
+    EXPECT_EQ(failure.code, ExitCode::kUsage);
+    EXPECT_THAT(failure.message, HasSubstr("24x1 panels (--panels) have no room in 47x48 pixels (--size)"));
 }
 
 TEST(Panels, OfNoGridOrRateAreRefused) {
