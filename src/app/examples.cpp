@@ -85,8 +85,12 @@ ExitCode write_scene(const Console& console, const InitOptions& options) {
                                              example.name, path, stem)
                                : fmt::format("example {}; make its samples with: corda sweep {} -o {}",
                                              example.name, path, stem));
-    for (const auto& [file_path, text] : files) console.result(file_path);
-    console.report({{"schema", 1}, {"output", path}, {"example", example.name}});
+    nlohmann::json outputs = nlohmann::json::array();
+    for (const auto& [file_path, text] : files) {
+        console.result(file_path);
+        outputs.push_back({{"path", file_path}});
+    }
+    console.report({{"schema", 1}, {"output", path}, {"outputs", outputs}, {"example", example.name}});
     return ExitCode::kOk;
 }
 

@@ -86,6 +86,8 @@ TEST(Init, WritesASweepAndItsScene) {
     EXPECT_EQ(run_corda({"sweep", folder.file("clips.toml"), "-o", folder.file("none"), "--check"}).exit_code,
               7);
     EXPECT_EQ(init_in(folder, "clips").exit_code, 6);
+    EXPECT_EQ(nlohmann::json::parse(init_in(folder, "clips --force --json").out)["outputs"],
+              nlohmann::json::parse(R"([{"path": "clips.toml"}, {"path": "clip.toml"}])"));
 }
 
 TEST(Init, TakesANewNameAndReplacesNothing) {
