@@ -61,8 +61,8 @@ class FilmRenderer {
     /// Draws list_poses() with the film's own context.
     [[nodiscard]] static Image draw_poses(Film& film, std::span<const double> times_s);
     /// The same motion in pictures of another size, style or overlay, without a plot and without another
-    /// simulation. `look` has the bodies, the world, the colouring and the arrows of the film's scene.
-    /// Throws corda::Error (kInternal) for others or a plot.
+    /// simulation. `look` has the bodies and the world of the film's scene. Throws corda::Error (kInternal)
+    /// for another colouring, other arrows, a longer trail or a plot.
     [[nodiscard]] static Film another_look(const Film& film, const Scene& look);
     /// Reads the states at these increasing times in at most one simulation and keeps them whatever the
     /// memory budget is. Throws as Film::state_at().

@@ -125,7 +125,7 @@ struct OverlayDef {
     std::optional<bool> time;
     std::optional<bool> scale_bar;  ///< a length of 1, 2 or 5 times a power of 10; default: as `time`
     std::optional<bool> legend;     ///< the scales of style.color_by and style.arrows; default: as `time`
-    std::string title;              ///< UTF-8, of characters that DejaVu Sans has; empty: none
+    std::string title;              ///< UTF-8, of characters that a font of the system has; empty: none
     bool energy = false;            ///< the error of the energy (Figures::energy_error)
     bool method = false;            ///< the methods, and the bound of the displayed error
     std::vector<LivePlot> plots;    ///< each once; a frame without room for all shows the first ones

@@ -62,8 +62,8 @@ Recovered recover(const std::string& folder, const std::string& path, const Outp
 /// Joins finished videos that Corda has written, one after the other, to the video `path`, without encoding
 /// them again. They are verified first, and decoded in child processes. `comment` is a JSON object to which
 /// the rate, the number of frames and the first colours are added. Returns the parts. Throws corda::Error:
-/// kUsage if two differ in anything that a player takes as constant (the message says in what), or if `path`
-/// has the ending of another container; kMismatch if one fails its check; kIo; kInterrupted if cancelled.
+/// kUsage if `path` has the ending of another container; kMismatch if one fails its check, or if two differ
+/// in anything that a player takes as constant (the message says in what); kIo; kInterrupted if cancelled.
 ChunkRun join_videos(const std::vector<std::string>& parts, const std::string& path, const std::string& title,
                      const std::string& comment, const OutputOptions& options);
 
