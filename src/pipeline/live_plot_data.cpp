@@ -89,8 +89,8 @@ struct Sample {
 /// sample adds to the curves: the y of each over time, otherwise x and y.
 struct Kind {
     StateFields fields;
-    PlotData (*axes)(const Subject& subject);
-    std::vector<CurvePoint> (*values)(const Subject& subject, const Sample& sample);
+    PlotData (*axes)(const Subject& subject) = nullptr;
+    std::vector<CurvePoint> (*values)(const Subject& subject, const Sample& sample) = nullptr;
 };
 
 constexpr StateFields kVelocities{.velocities = true};
