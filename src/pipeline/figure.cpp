@@ -92,6 +92,7 @@ int best_columns(int width_px, int height_px, int count) {
 /// The most cells that have room, in this many columns or, with 0, in any number of them.
 int most_cells(int width_px, int height_px, int columns) {
     int most = 0;
+    columns = std::min(columns, kMaxSidePx);
     const int last = columns == 0 ? width_px / kMinCellPx : columns;
     for (int c = std::max(columns, 1); c <= last; ++c)
         for (int rows = 1; Sheet(width_px, height_px, c, c * rows).has_room(); ++rows)
