@@ -85,13 +85,6 @@ std::size_t tip_of(const System& system) {
     return tracked.empty() ? 0 : tracked.front().particle;
 }
 
-std::size_t body_of(const System& system, std::size_t particle) {
-    const auto after =
-        std::partition_point(system.bodies.begin(), system.bodies.end(),
-                             [particle](const Body& body) { return body.first_particle <= particle; });
-    return static_cast<std::size_t>(after - system.bodies.begin()) - 1;
-}
-
 std::size_t moving_count(const System& system) {
     return static_cast<std::size_t>(
         std::count_if(system.bodies.begin(), system.bodies.end(),

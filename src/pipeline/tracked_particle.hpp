@@ -37,9 +37,6 @@ struct TrackedParticle {
 /// The first free end of a rope; without one, the first tracked particle.
 [[nodiscard]] std::size_t tip_of(const System& system);
 
-/// The body of a particle.
-[[nodiscard]] std::size_t body_of(const System& system, std::size_t particle);
-
 /// Number of bodies with free particles.
 [[nodiscard]] std::size_t moving_count(const System& system);
 

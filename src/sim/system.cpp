@@ -286,6 +286,13 @@ std::size_t rope_count(const System& system) {
     return static_cast<std::size_t>(first_net - system.bodies.begin());
 }
 
+std::size_t body_of(const System& system, std::size_t particle) {
+    const auto after =
+        std::partition_point(system.bodies.begin(), system.bodies.end(),
+                             [particle](const Body& body) { return body.first_particle <= particle; });
+    return static_cast<std::size_t>(after - system.bodies.begin()) - 1;
+}
+
 std::string body_name(const System& system, std::size_t body) {
     if (!system.bodies[body].label.empty()) return system.bodies[body].label;
     const std::size_t ropes = rope_count(system);

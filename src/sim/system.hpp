@@ -98,6 +98,9 @@ struct LinkRange {
 /// Number of ropes among the bodies; ropes come before nets.
 [[nodiscard]] std::size_t rope_count(const System& system);
 
+/// Index of the body that has a particle.
+[[nodiscard]] std::size_t body_of(const System& system, std::size_t particle);
+
 /// Name of a body: "rope 2" or "net 0", counted within its kind.
 [[nodiscard]] std::string body_name(const System& system, std::size_t body);
 

@@ -166,8 +166,7 @@ std::vector<SceneView::Ball> SceneView::balls_of(std::size_t b) const {
 }
 
 BodyLabel SceneView::label_at(std::size_t particle, std::string text) const {
-    std::size_t b = 0;
-    while (particle >= system_->bodies[b].first_particle + system_->bodies[b].particle_count) ++b;
+    const std::size_t b = body_of(*system_, particle);
     double clear_px = std::max(bodies_[b].radius_px, bodies_[b].end_radius_px);
     for (const Ball& ball : bodies_[b].balls)
         if (ball.particle == particle) clear_px = ball.radius_px;
@@ -298,10 +297,9 @@ void SceneView::draw_trails(std::span<const Trail> trails, const Camera& camera,
     const double max_pieces = std::clamp(kPiecesOfTrails / points, kMinPiecesPerPoint, kMaxPiecesPerPoint);
     const double slope_px = style_.trail_s * camera.pixels_per_metre();
     std::vector<FadingPoint> path;
-    std::size_t b = 0;
     for (std::size_t i = 0; i < traced_.size(); ++i) {
         check_cancelled();
-        while (traced_[i] >= system_->bodies[b].first_particle + system_->bodies[b].particle_count) ++b;
+        const std::size_t b = body_of(*system_, traced_[i]);
         path.clear();
         for (const auto& [age_s, at_m, velocity_m_s] : trails[i])
             path.push_back({{camera.x_px(at_m.x), camera.y_px(at_m.y)},
