@@ -22,8 +22,8 @@
 #include "corda/media/format/format.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/film_renderer.hpp"
+#include "corda/pipeline/panels.hpp"
 #include "corda/pipeline/plan_text.hpp"
-#include "corda/view/colors.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -185,16 +185,13 @@ std::string endings_text() {
 
 /// Warns if the output format falls back from its default, loses transparency or may fill the disk.
 void report_format(const Console& console, const std::vector<Scene>& scenes, const CheckedOutput& output) {
-    const bool is_opaque = std::all_of(scenes.begin(), scenes.end(), [](const Scene& scene) {
-        return view::look_of(scene.style).ground.is_opaque();
-    });
     const media::Format& format = output.video().format;
     if (format.is_fallback) {
         console.warning(fmt::format("{}, the default of {}, is not available: encoding with {} ({})",
                                     format.ending->codecs.front(), format.ending->text, format.codec->name,
                                     format.codec->standard));
     }
-    if (!is_opaque && std::string_view(format.ending->muxer) == "gif")
+    if (!pipeline::are_opaque(scenes) && std::string_view(format.ending->muxer) == "gif")
         console.warning(
             "a GIF has no half transparent pixels: edges will be hard; .webp and .apng keep them");
     const std::string warning =

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "corda/view/colors.hpp"
+
 namespace corda {
 namespace {
 
@@ -70,6 +72,11 @@ VideoDef panels_video(std::span<const Scene> scenes, int columns) {
 }
 
 namespace pipeline {
+
+bool are_opaque(std::span<const Scene> scenes) {
+    return std::all_of(scenes.begin(), scenes.end(),
+                       [](const Scene& scene) { return view::look_of(scene.style).ground.is_opaque(); });
+}
 
 Panels::Panels(std::span<Film> given, int count) : films(given), columns(count) {
     for (const Film& film : films) scenes.push_back(film.scene());

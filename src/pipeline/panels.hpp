@@ -22,6 +22,9 @@ struct Nested : std::deque<T> {
     }
 };
 
+/// True if the grounds of all scenes are opaque.
+[[nodiscard]] bool are_opaque(std::span<const Scene> scenes);
+
 /// Films side by side in one film, row by row; of a single film, that film. Frame k shows frame k of each, or
 /// its last one.
 struct Panels {

@@ -77,11 +77,6 @@ void check_chunks(const std::string& path, const std::map<std::string, std::stri
     media::check_chunks_in_child(parts, *manifest);
 }
 
-bool are_opaque(std::span<const Scene> panels) {
-    return std::all_of(panels.begin(), panels.end(),
-                       [](const Scene& scene) { return view::look_of(scene.style).ground.is_opaque(); });
-}
-
 nlohmann::json json_or_null(const std::optional<double>& value) {
     return value ? nlohmann::json(*value) : nlohmann::json();
 }
@@ -105,7 +100,7 @@ media::VideoMetadata metadata(const pipeline::Panels& panels, std::int64_t first
     made.frames = fmt::format("{}:{}", first, end);
     const std::string provenance = provenance_text(std::move(made));
     comment[kProvenanceKey] = nlohmann::json::parse(provenance);
-    return {title, comment.dump(), !are_opaque(panels.scenes),
+    return {title, comment.dump(), !pipeline::are_opaque(panels.scenes),
             [name = is_one ? panels.scenes.front().name : title, rate = panels.video.scene_rate(),
              of_picture](std::int64_t frame) {
                 return picture_info(name, fmt::format("{}", rate.time_s(frame)), std::to_string(frame),
@@ -292,7 +287,7 @@ media::CheckedVideo check_video(std::span<const Scene> panels, int columns, cons
                                                            .force = def.force,
                                                            .resume = def.resume,
                                                            .shard = def.shard},
-                                                          input, !are_opaque(panels));
+                                                          input, !pipeline::are_opaque(panels));
     for (const Scene& scene : panels) check_ground(scene, video.format);
     check_memory(video.format, video.def, panels.size());
     const bool continues = def.resume || def.shard;
@@ -408,7 +403,7 @@ Rendered render_video(std::span<Film> films, const CheckedOutput& output, const 
 
 std::vector<std::string> video_files(Film& film, FilmRenderer& renderer, const std::string& name) {
     const VideoDef& def = film.scene().video;
-    const bool is_opaque = are_opaque({&film.scene(), 1});
+    const bool is_opaque = pipeline::are_opaque({&film.scene(), 1});
     const media::CheckedVideo video{.path = name,
                                     .def = def,
                                     .format = media::find_format(name, def, !is_opaque),
