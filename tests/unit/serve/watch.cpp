@@ -39,6 +39,16 @@ std::string replaced(std::string text, const std::string& old, const std::string
     return text.replace(text.find(old), old.size(), its);
 }
 
+/// The next state that is not busy and has another version than `version`, which becomes its own.
+Json next_state(Watch& watch, std::int64_t& version) {
+    Json state;
+    do {
+        state = Json::parse(watch.answer({false, "state", {{"after", std::to_string(version)}}, ""}).body);
+        version = state["version"];
+    } while (state["busy"]);
+    return state;
+}
+
 class WatchTest : public testing::Test {
   protected:
     Response get(const std::string& path, std::int64_t film = 0) {
@@ -48,16 +58,7 @@ class WatchTest : public testing::Test {
         return watch_.answer({true, path, {}, body.dump()});
     }
 
-    /// The next state that is not busy and has another version than that of the last call.
-    Json state() {
-        Json state;
-        do {
-            state =
-                Json::parse(watch_.answer({false, "state", {{"after", std::to_string(version_)}}, ""}).body);
-            version_ = state["version"];
-        } while (state["busy"]);
-        return state;
-    }
+    Json state() { return next_state(watch_, version_); }
 
     Json save(const std::string& text) {
         test::write_file(path_, text);
@@ -179,15 +180,7 @@ TEST_F(WatchTest, NumbersAreThoseOfSettings) {
                  .settings = {"rope[0].hang.angle_deg=30", "world.gravity=[0,-2]"},
                  .longest_side_px = 160,
                  .film = {}});
-    auto next = [&watch, version = std::int64_t{0}]() mutable {
-        Json state;
-        do {
-            state =
-                Json::parse(watch.answer({false, "state", {{"after", std::to_string(version)}}, ""}).body);
-            version = state["version"];
-        } while (state["busy"]);
-        return state;
-    };
+    auto next = [&watch, version = std::int64_t{0}]() mutable { return next_state(watch, version); };
     const auto post = [&watch](const std::string& path, const Json& body) {
         return watch.answer({true, path, {}, body.dump()}).status;
     };
@@ -220,15 +213,7 @@ TEST_F(WatchTest, WrittenNumbersCountInPlaceOfSettingsHoweverTheyAreSpelt) {
                  .settings = {"world.duration = 2", "world.gravity=[0,-5]", "video.fps=10"},
                  .longest_side_px = 160,
                  .film = {}});
-    auto next = [&watch, version = std::int64_t{0}]() mutable {
-        Json state;
-        do {
-            state =
-                Json::parse(watch.answer({false, "state", {{"after", std::to_string(version)}}, ""}).body);
-            version = state["version"];
-        } while (state["busy"]);
-        return state;
-    };
+    auto next = [&watch, version = std::int64_t{0}]() mutable { return next_state(watch, version); };
     EXPECT_EQ(next()["film"]["frames"], 20);
     for (const auto& [key, value] : {std::pair("world.duration", 4.0), std::pair("world.gravity[1]", -3.0)}) {
         EXPECT_EQ(watch.answer({true, "number", {}, Json{{"key", key}, {"value", value}}.dump()}).status,
