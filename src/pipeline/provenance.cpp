@@ -399,23 +399,20 @@ Provenance read_provenance(const std::string& path, OriginUse use) {
                                 use == OriginUse::kJoin ? kVideoRemedy : "give it without --from"));
     const std::string kind = media::file_kind(path);
     if (kind == "gif" || kind == "apng" || kind == "webp")
-        fail_at(path, "is a GIF, an APNG or a WebP, none of which tells what it was made from", use);
+        fail_at(path, "is a GIF, an APNG or a WebP; these formats carry no provenance", use);
     PngTexts png;
     if (media::is_png(path))
         png = texts_in(read_png_info(path));
     else
         png.provenance = text_in_video(path, use);
     const std::string& text = png.provenance;
-    if (text.empty()) fail_at(path, "does not tell what it was made from", use);
-    if (text.size() > 2 * Provenance::kMaxBytes) fail_at(path, "tells more than corda writes", use);
+    if (text.empty()) fail_at(path, "has no provenance", use);
+    if (text.size() > 2 * Provenance::kMaxBytes) fail_at(path, "has more provenance than corda writes", use);
     Provenance provenance;
     try {
         provenance = parsed(text);
     } catch (const std::exception& error) {
-        fail_at(
-            path,
-            fmt::format("tells what it was made from in a way that is damaged ({})", printable(error.what())),
-            use);
+        fail_at(path, fmt::format("has damaged provenance ({})", printable(error.what())), use);
     }
     if (!provenance.picture) provenance.picture = frame_of_sequence(png.frame);
     return provenance;

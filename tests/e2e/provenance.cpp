@@ -204,7 +204,7 @@ TEST_F(ProvenanceOfFiles, DamagedProvenanceIsRefused) {
         const auto result = run_corda({"render", "--from", folder().file("bad.png"), "--size", "100x100",
                                        "-o", folder().file("x.mp4")});
         EXPECT_EQ(result.exit_code, 2) << parts;
-        EXPECT_THAT(result.err, HasSubstr("in a way that is damaged")) << parts;
+        EXPECT_THAT(result.err, HasSubstr("has damaged provenance")) << parts;
     }
     std::string scene = sound;
     scene.replace(scene.find("particles = 3"), 13, "particles = 1");
