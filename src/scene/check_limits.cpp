@@ -278,7 +278,8 @@ Work work_of(const Scene& scene, const System& system, const Body& body, const S
         sim::implicit_pays(system, body, scene.world, kUsualTolerance))
         method = ExactDef{kUsualTolerance, true};
     Work work;
-    work.steps = sim::expected_steps(method, body, frequency_1_s, scene.world.duration_s);
+    // -0.0, which a drag of -0.0 gives, would have a limit of -inf.
+    work.steps = std::max(0.0, sim::expected_steps(method, body, frequency_1_s, scene.world.duration_s));
     work.updates =
         work.steps * static_cast<double>(body.particle_count) * sim::relative_step_work(method, body);
     return work;

@@ -213,6 +213,8 @@ TEST(Limits, OfHowFastABodyMayMove) {
     EXPECT_NO_THROW(std::ignore =
                         parse_scene(world + "drag = 1e6\n" + rope + "velocity = [1e5, 0.0]\n", "a"));
     EXPECT_NO_THROW(std::ignore = parse_scene(world + free, "a"));
+    const std::string hanging = "[[rope]]\nhang = { links = 1000, length = 10.0, angle_deg = 5.0 }\n";
+    EXPECT_NO_THROW(std::ignore = parse_scene(world + "drag = -0.0\n" + hanging, "a"));
     const std::string relaxation = "[solver]\nmethod = \"relaxation\"\n";
     EXPECT_NO_THROW(std::ignore = parse_scene(world + rope + "velocity = [1e12, 0.0]\n" + relaxation, "a"));
     for (const auto& [text, place] :
