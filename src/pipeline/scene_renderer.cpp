@@ -112,9 +112,13 @@ double SceneRenderer::height_about(std::span<const MotionBounds> motion,
     const CameraDef about{Vec2{}, {}, scene_->camera.margin};
     std::vector<view::Drawn> drawn = view_.drawn_bodies(motion);
     view_.arrows().list(drawn, &arrows);
-    return view::fit_camera(about, {}, drawn, scene_->video.width_px, scene_->video.height_px,
-                            overlay_.insets())
-        .height_m.value();
+    view::Insets insets = overlay_.insets();
+    const auto taken_x_px = static_cast<int>(std::exchange(insets.right_panel_px, 0.0));
+    const auto taken_y_px = static_cast<int>(std::exchange(insets.bottom_panel_px, 0.0));
+    const int height_px = scene_->video.height_px - taken_y_px;
+    const CameraDef beside =
+        view::fit_camera(about, {}, drawn, scene_->video.width_px - taken_x_px, height_px, insets);
+    return *beside.height_m * (static_cast<double>(scene_->video.height_px) / height_px);
 }
 
 view::CameraTrack SceneRenderer::track(double end_s,
@@ -146,8 +150,11 @@ view::CameraTrack SceneRenderer::track(double end_s,
         }
         camera.height_m = height_about(about, arrows);
     }
+    const view::Insets insets = overlay_.insets();
+    const Vec2 beside_panels_m = (0.5 * *camera.height_m / scene_->video.height_px) *
+                                 Vec2{insets.right_panel_px, -insets.bottom_panel_px};
     for (std::size_t k = 0; k < times_s.size(); ++k)
-        keys.push_back({times_s[k], system_->origin_m + path[k], *camera.height_m});
+        keys.push_back({times_s[k], system_->origin_m + path[k] + beside_panels_m, *camera.height_m});
     return view::CameraTrack(std::move(keys));
 }
 

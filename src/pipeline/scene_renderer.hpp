@@ -138,8 +138,8 @@ class SceneRenderer {
     [[nodiscard]] const gl::Context& context() const { return canvas_->context; }
 
   private:
-    /// Height of a picture whose middle is the origin of these bounds of each particle, so that all bodies
-    /// and arrows are in view.
+    /// Height of a picture in which the origin of these bounds of each particle is in the middle of what
+    /// panels leave, so that all bodies and arrows are in view.
     [[nodiscard]] double height_about(std::span<const MotionBounds> motion,
                                       const view::ArrowExtents& arrows) const;
     void open(Needs needs);

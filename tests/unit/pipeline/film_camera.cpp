@@ -13,14 +13,14 @@ namespace {
 
 using testing::HasSubstr;
 
-Film film_with_camera(const std::string& camera, const std::string& video = "",
-                      const char* angle_deg = "40") {
+Film film_with_camera(const std::string& camera, const std::string& video = "", const char* angle_deg = "40",
+                      const std::vector<std::string>& settings = {}) {
     return Film(
         parse_scene("schema = 1\n[world]\nduration = 1.0\n"
                     "[[rope]]\nhang = { links = 4, length = 1.0, angle_deg = " +
                         std::string(angle_deg) + " }\n[video]\nsize = [96, 64]\nfps = 20\n" + video +
                         "[camera]\n" + camera,
-                    "film.toml"));
+                    "film.toml", settings));
 }
 
 TEST(FilmCamera, OfAPathIsAtItsKeys) {
@@ -56,6 +56,20 @@ TEST(FilmCamera, ThatFollowsKeepsItInTheMiddleOfAllThatIsInView) {
         resting.to_pixels({{Vec2{0.0, -0.5}}}, 0.5).at(0);  // of mass: 4 and the pin of 1 kg each
     EXPECT_NEAR(middle.x, 48.0, 1e-9);
     EXPECT_NEAR(middle.y, 32.0, 1e-9);
+}
+
+TEST(FilmCamera, ThatFollowsKeepsItInTheMiddleOfWhatPlotsLeave) {
+    const std::string plot = "[overlay]\nplots = [\"angle\"]\n";
+    const std::vector<std::string> large{"video.size=[640,360]"};
+    Film plain = film_with_camera("follow = 0\n", "", "0", large);
+    Film beside = film_with_camera("follow = 0\n" + plot, "", "0", large);
+    Film wider = film_with_camera("follow = 0\nheight = 2.0\n" + plot, "", "0", large);
+    const Vec2 mass{0.0, -0.5};
+    const double middle_px = beside.to_pixels({{mass}}, 0.5).at(0).x;
+    EXPECT_LT(middle_px, 240.0);
+    EXPECT_NEAR(wider.to_pixels({{mass}}, 0.5).at(0).x, middle_px, 1e-9);
+    // The height of the rope limits both pictures.
+    EXPECT_NEAR(*beside.camera().height_m, *plain.camera().height_m, 1e-9);
 }
 
 TEST(FilmCamera, BlurFollowsTheMovingCamera) {
