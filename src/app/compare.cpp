@@ -164,9 +164,7 @@ void check_diff_folder(const CompareOptions& options) {
     std::error_code none;
     for (const std::string& folder : {options.a, options.b})
         if (fs::equivalent(options.diff, folder, none))
-            throw Error(ExitCode::kUsage, fmt::format("--diff {}: holds the pictures that are compared; name "
-                                                      "another folder",
-                                                      options.diff));
+            throw_usage("--diff {}: holds the pictures that are compared; name another folder", options.diff);
 }
 
 /// The figures of the worst.
@@ -184,9 +182,7 @@ ExitCode compare_folders(const Console& console, const CompareOptions& options,
                          const std::optional<Image>& mask) {
     std::vector<Pair> pairs =
         pairs_of(pictures_in(options.a, options.diff), pictures_in(options.b, options.diff));
-    if (pairs.empty())
-        throw Error(ExitCode::kUsage,
-                    fmt::format("neither '{}' nor '{}' has a PNG file", options.a, options.b));
+    if (pairs.empty()) throw_usage("neither '{}' nor '{}' has a PNG file", options.a, options.b);
     check_diff_folder(options);
     compare_all(options, mask, pairs);
     Difference worst;
@@ -224,10 +220,8 @@ ExitCode compare_folders(const Console& console, const CompareOptions& options,
 
 void check_diff(const CompareOptions& options) {
     if (options.diff.empty()) return;
-    if (!is_png(options.diff)) {
-        throw Error(ExitCode::kUsage,
-                    fmt::format("--diff {}: the picture is written as .png; give such a name", options.diff));
-    }
+    if (!is_png(options.diff))
+        throw_usage("--diff {}: the picture is written as .png; give such a name", options.diff);
     check_output(options.diff, options.a, options.force);
     check_output(options.diff, options.b, options.force);
 }
@@ -241,16 +235,14 @@ ExitCode compare(const Console& console, CompareOptions options) {
         if (!fs::exists(path, none)) fail_file("read", path, none ? none.value() : ENOENT);
     const bool is_folder = fs::is_directory(options.a, none);
     if (is_folder != fs::is_directory(options.b, none)) {
-        throw Error(ExitCode::kUsage,
-                    fmt::format("'{}' is a folder and '{}' is none; name two pictures, or two folders",
-                                is_folder ? options.a : options.b, is_folder ? options.b : options.a));
+        throw_usage("'{}' is a folder and '{}' is none; name two pictures, or two folders",
+                    is_folder ? options.a : options.b, is_folder ? options.b : options.a);
     }
     if (is_folder) return compare_folders(console, options, mask);
     const bool is_video = is_video_name(options.a);
     if (is_video != is_video_name(options.b)) {
-        throw Error(ExitCode::kUsage,
-                    fmt::format("'{}' is a video and '{}' is none; name two videos, or two pictures",
-                                is_video ? options.a : options.b, is_video ? options.b : options.a));
+        throw_usage("'{}' is a video and '{}' is none; name two videos, or two pictures",
+                    is_video ? options.a : options.b, is_video ? options.b : options.a);
     }
     check_diff(options);
     return is_video ? compare_videos(console, options, mask) : compare_pictures(console, options, mask);

@@ -186,10 +186,9 @@ Json compare_two(const CompareOptions& options, const std::optional<Image>& mask
     if (end && end->outcome == ChildEnd::Outcome::kOutOfMemory)
         throw Error(ExitCode::kIo, "a video asks for more memory than it may have");
     if (end && !end->finished()) {
-        throw Error(ExitCode::kIo,
-                    fmt::format("cannot compare '{}' with '{}': decoding {}; `corda verify` says "
-                                "which is damaged",
-                                options.a, options.b, end->text));
+        throw_error(ExitCode::kIo,
+                    "cannot compare '{}' with '{}': decoding {}; `corda verify` says which is damaged",
+                    options.a, options.b, end->text);
     }
     const std::string report = end ? end->text : compared(options, mask);
     const std::size_t line = report.find('\n');

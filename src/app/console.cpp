@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "corda/core/basics.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/text.hpp"
 
@@ -29,7 +28,7 @@ void write_stdout(std::string_view text) {
     const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() &&
                          std::fputc('\n', stdout) != EOF && std::fflush(stdout) == 0;
     if (!written && errno != EPIPE)
-        throw Error(ExitCode::kIo, fmt::format("writing to standard output: {}", std::strerror(errno)));
+        throw_error(ExitCode::kIo, "writing to standard output: {}", std::strerror(errno));
 }
 
 /// A closed or full stderr must not end the work.

@@ -111,8 +111,8 @@ golden::SuiteResult run_until_asked(golden::SuiteDef& def) {
     } catch (const Error&) {
         // Afterwards an update is published, whose errors say what became of it.
         if (interruption() == ExitCode::kOk || compared == all) throw;
-        throw Error(interruption(), fmt::format("interrupted after {} of {}; nothing was written", compared,
-                                                counted(all, "picture")));
+        throw_error(interruption(), "interrupted after {} of {}; nothing was written", compared,
+                    counted(all, "picture"));
     }
 }
 

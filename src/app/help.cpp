@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 #include "corda/scene/schema.hpp"
 
 namespace corda::app {
@@ -93,8 +93,7 @@ std::string text_about(const CLI::App& app, const std::string& topic) {
     std::vector<std::string> topics = command_names(app);
     topics.emplace_back(kSceneTopic);
     topics.emplace_back(kManualTopic);
-    throw Error(ExitCode::kUsage,
-                fmt::format("there is no help on \"{}\"; {}", topic, advice(topic, topics)));
+    throw_usage("there is no help on \"{}\"; {}", topic, advice(topic, topics));
 }
 
 }  // namespace

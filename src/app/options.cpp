@@ -8,7 +8,6 @@
 #include <fmt/ranges.h>
 
 #include "commands.hpp"
-#include "corda/core/basics.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/timeline.hpp"
 #include "corda/scene/check_limits.hpp"
@@ -75,16 +74,14 @@ RequestedFrames frames_of(const std::string& word, const Scene& scene) {
         range = *parsed;
     } else {
         const bool has_step = std::count(word.begin(), word.end(), ':') > 1;
-        throw Error(ExitCode::kUsage,
-                    fmt::format("--frame {}: is neither a frame number nor a range FIRST:END of them{}", word,
-                                has_step ? "; a range has no step: list frames such as 0,24,48" : ""));
+        throw_usage("--frame {}: is neither a frame number nor a range FIRST:END of them{}", word,
+                    has_step ? "; a range has no step: list frames such as 0,24,48" : "");
     }
     const std::int64_t end = range.end.value_or(count);
     if (range.first < 0 || range.first >= end || end > count) {
-        throw Error(ExitCode::kUsage,
-                    fmt::format("--frame {}: the frames are 0 to {}, all of them the range 0:{}; "
-                                "world.duration sets the end",
-                                word, count - 1, count));
+        throw_usage(
+            "--frame {}: the frames are 0 to {}, all of them the range 0:{}; world.duration sets the end",
+            word, count - 1, count);
     }
     return {range.first, end};
 }
@@ -101,10 +98,8 @@ std::string size_setting(const std::string& text) {
     const std::string width = text.substr(0, cross);
     const std::string height = cross == std::string::npos ? "" : text.substr(cross + 1);
     if (!is_number(width) || !is_number(height)) {
-        throw Error(ExitCode::kUsage,
-                    fmt::format("--size {}: is not WIDTHxHEIGHT; write e.g. 1920x1080, 4k, 1080p, square or "
-                                "portrait",
-                                text));
+        throw_usage("--size {}: is not WIDTHxHEIGHT; write e.g. 1920x1080, 4k, 1080p, square or portrait",
+                    text);
     }
     return fmt::format("video.size=[{},{}]", width, height);
 }
@@ -181,13 +176,11 @@ void SceneOptions::check_size_from_file(const VideoDef& video) const {
     constexpr double kBytesPerEncodedPx = 25.0;  // 1640 MB by libx264 with the preset ultrafast
     const std::int64_t pixels = std::int64_t{video.width_px} * video.height_px;
     if (pixels <= kMaxUnaskedPx || gives_size()) return;
-    throw Error(
-        ExitCode::kInvalidScene,
-        fmt::format("{}: its scene asks for {}x{} pixels, which take some {:.1f} GB to draw and {:.1f} "
-                    "GB or more to encode; allow that by --size {}x{}, or give a smaller size",
-                    from_, video.width_px, video.height_px, static_cast<double>(pixels) * kBytesPerPx * 1e-9,
-                    static_cast<double>(pixels) * kBytesPerEncodedPx * 1e-9, video.width_px,
-                    video.height_px));
+    throw_error(ExitCode::kInvalidScene,
+                "{}: its scene asks for {}x{} pixels, which take some {:.1f} GB to draw and {:.1f} GB or "
+                "more to encode; allow that by --size {}x{}, or give a smaller size",
+                from_, video.width_px, video.height_px, static_cast<double>(pixels) * kBytesPerPx * 1e-9,
+                static_cast<double>(pixels) * kBytesPerEncodedPx * 1e-9, video.width_px, video.height_px);
 }
 
 bool SceneOptions::gives_size() const {
@@ -303,10 +296,8 @@ Shard parse_shard(const std::string& text) {
     const bool is_read = std::sscanf(text.c_str(), "%" SCNd64 "/%" SCNd64, &shard.index, &shard.count) == 2;
     if (!is_read || fmt::format("{}/{}", shard.index, shard.count) != text || shard.index < 0 ||
         shard.index >= shard.count)
-        throw Error(ExitCode::kUsage,
-                    fmt::format("--shard {}: is not I/N, the number of this shard (0 .. N - 1) and how many "
-                                "there are",
-                                text));
+        throw_usage("--shard {}: is not I/N, the number of this shard (0 .. N - 1) and how many there are",
+                    text);
     return shard;
 }
 
@@ -339,9 +330,8 @@ std::vector<RequestedTime> TimeOptions::list(const Scene& scene) const {
     for (const double time_s : times_s) {
         const auto within_s = time_within(time_s, scene.world.duration_s);
         if (!within_s) {
-            throw Error(ExitCode::kUsage,
-                        fmt::format("--at {}: is not within 0 .. {} s; world.duration sets the end", time_s,
-                                    scene.world.duration_s));
+            throw_usage("--at {}: is not within 0 .. {} s; world.duration sets the end", time_s,
+                        scene.world.duration_s);
         }
         times.push_back({*within_s, std::nullopt});
     }
@@ -349,9 +339,10 @@ std::vector<RequestedTime> TimeOptions::list(const Scene& scene) const {
         const RequestedFrames range = frames_of(word, scene);
         const auto count = static_cast<std::int64_t>(times.size()) + *range.end - range.first;
         if (count > kMaxTimes) {
-            throw Error(ExitCode::kUsage, fmt::format("--frame {}: are {} pictures or more, over the limit "
-                                                      "of {}; `corda render` makes a video of them",
-                                                      word, count, kMaxTimes));
+            throw_usage(
+                "--frame {}: are {} pictures or more, over the limit of {}; `corda render` makes a video of "
+                "them",
+                word, count, kMaxTimes);
         }
         for (std::int64_t k = range.first; k < *range.end; ++k)
             times.push_back({scene.video.scene_rate().time_s(k), k});

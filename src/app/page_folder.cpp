@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "corda/core/file.hpp"
+#include "corda/core/text.hpp"
 
 namespace corda::app {
 
@@ -20,18 +21,15 @@ void add_force(CLI::App& command, bool& force) {
 void prepare_page_folder(const std::string& path, bool force, bool dry_run) {
     std::error_code failure;
     const bool is_there = fs::exists(path, failure);
-    if (is_there && !fs::is_directory(path, failure)) {
-        throw Error(ExitCode::kIo, fmt::format("{}: exists and is not a folder; choose another name", path));
-    }
+    if (is_there && !fs::is_directory(path, failure))
+        throw_error(ExitCode::kIo, "{}: exists and is not a folder; choose another name", path);
     check_folder(path);
     if (dry_run && !is_there) return;
     make_folder(path);
     const bool is_empty = fs::is_empty(path, failure);
     if (failure) fail_file("read", path, failure.value());
-    if (!is_empty && !force) {
-        throw Error(ExitCode::kIo,
-                    fmt::format("{}: is not empty; give --force to replace files of the same names", path));
-    }
+    if (!is_empty && !force)
+        throw_error(ExitCode::kIo, "{}: is not empty; give --force to replace files of the same names", path);
 }
 
 Error with_files(const Error& error, const report::ReportFolder& folder) {

@@ -97,15 +97,11 @@ void FigureOptions::require() const {
 void FigureOptions::take_origin(const Console& console, std::string_view command) {
     if (!scene.is_from() || !times.times_s.empty() || !times.frames.empty()) return;
     const std::optional<PictureOrigin>& picture = scene.provenance(console).picture;
-    if (!picture) {
-        throw Error(ExitCode::kUsage,
-                    fmt::format("'{}' has no record of its time; give --at or --frame", scene.input()));
-    }
+    if (!picture) throw_usage("'{}' has no record of its time; give --at or --frame", scene.input());
     const bool is_frame = picture->command == "frame" && command == "still";
     if (picture->command != command && !is_frame) {
-        throw Error(ExitCode::kUsage,
-                    fmt::format("'{}' was made by `corda {}`; use that, or give --at or --frame",
-                                scene.input(), picture->command == "frame" ? "render" : picture->command));
+        throw_usage("'{}' was made by `corda {}`; use that, or give --at or --frame", scene.input(),
+                    picture->command == "frame" ? "render" : picture->command);
     }
     for (const PictureTime& time : picture->times) {
         if (time.frame)
@@ -127,12 +123,10 @@ Scene FigureOptions::load(const Console& console) const {
     const double height_px = std::round(width_px * video.height_px / video.width_px);
     const bool is_sane = std::max(width_px, height_px) <= kMaxSidePx;
     if (!is_sane || !is_picture_size(std::lround(width_px), std::lround(height_px))) {
-        throw Error(
-            ExitCode::kUsage,
-            fmt::format("--width-mm {} at {} pixels per inch is {}x{} pixels, not 1 .. {} per side and "
-                        "{} in all; choose another width or --ppi",
-                        *width_mm, pixels_per_inch.value_or(kPrintPpi), width_px, height_px, kMaxSidePx,
-                        kMaxPicturePx));
+        throw_usage(
+            "--width-mm {} at {} pixels per inch is {}x{} pixels, not 1 .. {} per side and {} in all; choose "
+            "another width or --ppi",
+            *width_mm, pixels_per_inch.value_or(kPrintPpi), width_px, height_px, kMaxSidePx, kMaxPicturePx);
     }
     video.width_px = static_cast<int>(width_px);
     video.height_px = static_cast<int>(height_px);
@@ -195,10 +189,8 @@ PngInfo FigureOptions::png_info(const Scene& loaded, const std::vector<Requested
 
 ExitCode FigureOptions::write_one(const Console& console, const Scene& loaded,
                                   const std::vector<RequestedTime>& some, const FigureDef& def) const {
-    if (!is_figure_path(output)) {
-        throw Error(ExitCode::kUsage,
-                    fmt::format("-o {}: is one picture, .png, .svg or .pdf; give such a name", output));
-    }
+    if (!is_figure_path(output))
+        throw_usage("-o {}: is one picture, .png, .svg or .pdf; give such a name", output);
     check_output(output, scene.input(), force);
     const bool is_sheet = def.columns > 0;
     const int width_px = is_sheet ? def.width_px : loaded.video.width_px;
@@ -246,10 +238,10 @@ bool is_picture(const std::string& output) {
     const bool is_folder = is_directory(output);
     if (is_figure_path(output) && !is_folder) return true;
     if (output != "-" && (!path.has_extension() || is_folder)) return false;
-    throw Error(ExitCode::kUsage,
-                fmt::format("-o {}: stills are written as .png, .svg or .pdf; give such a name, or a folder "
-                            "(ending with / if its name has a dot)",
-                            output));
+    throw_usage(
+        "-o {}: stills are written as .png, .svg or .pdf; give such a name, or a folder (ending with / if "
+        "its name has a dot)",
+        output);
 }
 
 /// Its name in a folder: names sort by time and have one dot, so that no program takes a part of the time for
@@ -266,20 +258,17 @@ std::vector<Still> list_stills(const std::vector<RequestedTime>& times, const Sc
     for (const RequestedTime& time : times) stills.push_back({time, name_of(time, scene)});
     const auto same = std::adjacent_find(stills.begin(), stills.end(),
                                          [](const Still& a, const Still& b) { return a.path == b.path; });
-    if (same != stills.end()) {
-        throw Error(ExitCode::kUsage,
-                    fmt::format("two stills would both be {}; ask for each time once", same->path));
-    }
+    if (same != stills.end()) throw_usage("two stills would both be {}; ask for each time once", same->path);
     return stills;
 }
 
 void set_paths(const FigureOptions& options, std::vector<Still>& stills) {
     if (is_picture(options.output)) {
         if (stills.size() != 1) {
-            throw Error(ExitCode::kUsage,
-                        fmt::format("-o {}: is one file for {} stills; give a folder (`corda strobe` and "
-                                    "`corda sheet` draw several times in one picture)",
-                                    options.output, stills.size()));
+            throw_usage(
+                "-o {}: is one file for {} stills; give a folder (`corda strobe` and `corda sheet` draw "
+                "several times in one picture)",
+                options.output, stills.size());
         }
         stills.front().path = options.output;
     } else {
@@ -312,8 +301,8 @@ void write_each(const std::vector<Still>& stills, const FigureOptions& options, 
         }
     } catch (const Error& error) {
         if (written == 0 || error.code() != interruption()) throw;
-        throw Error(error.code(), fmt::format("interrupted: {} of {} stills are written, the last of them {}",
-                                              written, stills.size(), stills[written - 1].path));
+        throw_error(error.code(), "interrupted: {} of {} stills are written, the last of them {}", written,
+                    stills.size(), stills[written - 1].path);
     }
 }
 

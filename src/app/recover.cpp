@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
@@ -28,14 +27,12 @@ ExitCode recover(const Console& console, const RecoverOptions& options) {
     const std::string ending = media::parts_path("");
     const std::string parts = options.parts.substr(0, options.parts.find_last_not_of('/') + 1);
     if (parts.size() <= ending.size() || !parts.ends_with(ending))
-        throw Error(
-            ExitCode::kUsage,
-            fmt::format("'{}' does not end in {}; name the folder that an interrupted render has left",
-                        options.parts, ending));
+        throw_usage("'{}' does not end in {}; name the folder that an interrupted render has left",
+                    options.parts, ending);
     std::error_code failure;
     if (!std::filesystem::exists(parts, failure)) {
         if (failure) fail_file("read", parts, failure.value());
-        throw Error(ExitCode::kIo, fmt::format("there is no '{}', so there is nothing to recover", parts));
+        throw_error(ExitCode::kIo, "there is no '{}', so there is nothing to recover", parts);
     }
     const std::string output =
         options.output.empty() ? parts.substr(0, parts.size() - ending.size()) : options.output;

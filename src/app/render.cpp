@@ -55,8 +55,7 @@ void parse_range(std::string_view text, RenderDef& def) {
         def.end = range->end;
         return;
     }
-    throw Error(ExitCode::kUsage,
-                fmt::format("--frames {}: is not FIRST:END, two frame numbers (END is not drawn)", text));
+    throw_usage("--frames {}: is not FIRST:END, two frame numbers (END is not drawn)", text);
 }
 
 /// "FIRST:END" of the command line; of a file that is rendered again its own, unless the scene gets another
@@ -247,11 +246,11 @@ void check_adjacent_pictures(const VideoDef& video, const std::string& output, s
         if (!std::filesystem::is_regular_file(path, ignored) || !media::is_png(path)) continue;
         const Image other = read_png(path);
         if (other.width() == video.width_px && other.height() == video.height_px) continue;
-        throw Error(ExitCode::kUsage,
-                    fmt::format("{} has {}x{} pixels, and these frames would have {}x{}; give --size {}x{}, "
-                                "another folder, or --force if you replace the others as well",
-                                path, other.width(), other.height(), video.width_px, video.height_px,
-                                other.width(), other.height()));
+        throw_usage(
+            "{} has {}x{} pixels, and these frames would have {}x{}; give --size {}x{}, another folder, or "
+            "--force if you replace the others as well",
+            path, other.width(), other.height(), video.width_px, video.height_px, other.width(),
+            other.height());
     }
 }
 

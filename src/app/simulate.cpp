@@ -12,6 +12,7 @@
 #include "corda/core/cancel.hpp"
 #include "corda/core/csv.hpp"
 #include "corda/core/output_file.hpp"
+#include "corda/core/text.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/sweep/archive.hpp"
@@ -234,10 +235,9 @@ void check_ending(const std::string& output) {
     if (output.empty() || is_standard_output(output) || path.extension() == ".csv" || is_npz(output) ||
         is_device)
         return;
-    throw Error(ExitCode::kUsage,
-                fmt::format("-o {}: states are written as .csv or .npz; give such a name, or - for CSV on "
-                            "standard output",
-                            output));
+    throw_usage(
+        "-o {}: states are written as .csv or .npz; give such a name, or - for CSV on standard output",
+        output);
 }
 
 /// Simulates the motion and writes it, if there is an output.
@@ -261,7 +261,7 @@ void write_output(const Console& console, Film& film, const SimulateOptions& opt
         if (!file || to_npz || !ends_early) throw;
         const std::string kept = file->keep();
         if (is_standard_output(options.output)) throw;
-        throw Error(error.code(), fmt::format("{}; the rows before it are in {}", error.what(), kept));
+        throw_error(error.code(), "{}; the rows before it are in {}", error.what(), kept);
     }
     if (file) file->commit();
 }
@@ -274,9 +274,8 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     check_ending(options.output);
     const bool to_npz = is_npz(options.output);
     if (to_npz && (options.style != CsvStyle::kPoint || options.columns.diagnostics)) {
-        throw Error(ExitCode::kUsage, fmt::format("-o {}: --decimal and --diagnostics are for .csv; leave "
-                                                  "them out, or give such a name",
-                                                  options.output));
+        throw_usage("-o {}: --decimal and --diagnostics are for .csv; leave them out, or give such a name",
+                    options.output);
     }
     if (options.output.empty() && (options.columns != Columns() || options.style != CsvStyle::kPoint))
         console.warning(

@@ -40,9 +40,8 @@ sweep::RunResult run(const sweep::SweepDef& def, const sweep::RunDef& how) {
         return sweep::run_sweep(def, how);
     } catch (const Error& error) {
         if (!is_interruption(error.code())) throw;
-        throw Error(
-            error.code(),
-            fmt::format("interrupted: finished shards stay in {}; run it again for the others", how.folder));
+        throw_error(error.code(), "interrupted: finished shards stay in {}; run it again for the others",
+                    how.folder);
     }
 }
 
@@ -71,8 +70,7 @@ ExitCode sweep(const Console& console, const SweepOptions& options) {
                                  counted(result.shards_made, "shard"), counted(result.samples_made, "sample"),
                                  wall_s, static_cast<double>(result.samples_made) / wall_s));
     if (result.is_complete && result.failed == def.samples)
-        throw Error(ExitCode::kInvalidScene,
-                    fmt::format("all samples were refused; the first, {}", result.first_failure));
+        throw_error(ExitCode::kInvalidScene, "all samples were refused; the first, {}", result.first_failure);
     if (result.failed > 0)
         console.warning(fmt::format("{} refused, see column \"failure\" of metadata.csv; the first, {}",
                                     counted(result.failed, "sample"), result.first_failure));

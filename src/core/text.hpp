@@ -1,13 +1,29 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+
+#include "corda/core/basics.hpp"
 
 namespace corda {
+
+/// Throws corda::Error with a message that is formatted as by fmt::format().
+template <class... Values>
+[[noreturn]] void throw_error(ExitCode code, fmt::format_string<Values...> text, Values&&... values) {
+    throw Error(code, fmt::format(text, std::forward<Values>(values)...));
+}
+/// The same with kUsage.
+template <class... Values>
+[[noreturn]] void throw_usage(fmt::format_string<Values...> text, Values&&... values) {
+    throw_error(ExitCode::kUsage, text, std::forward<Values>(values)...);
+}
 
 /// `bytes`, which may be anything, as UTF-8: each byte that is not part of a character becomes its number in
 /// hexadecimal, e.g. "\xe9". U+FFFE and U+FFFF, which XML does not have, count as none.

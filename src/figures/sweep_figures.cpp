@@ -85,18 +85,15 @@ SweepColumn find_column(const sweep::SweepDef& sweep, const std::string& name) {
     for (const std::string& column : sweep.summary) all += column + ", ";
     for (const sweep::VariedKey& varied : sweep.vary) all += varied.key + ", ";
     all.erase(all.size() - 2);
-    throw Error(ExitCode::kUsage,
-                fmt::format("--plot: {} \"{}\"; give Y:X, two of {}",
-                            found.empty() ? "there is no column" : "several columns are named",
-                            printable(name), all));
+    throw_usage("--plot: {} \"{}\"; give Y:X, two of {}",
+                found.empty() ? "there is no column" : "several columns are named", printable(name), all);
 }
 
 /// The columns of "Y:X".
 std::pair<SweepColumn, SweepColumn> find_columns(const sweep::SweepDef& sweep, const std::string& columns) {
     const std::size_t colon = columns.find(':');
     if (colon == std::string::npos)
-        throw Error(ExitCode::kUsage,
-                    fmt::format("--plot {}: is not Y:X, such as period_s:angle_max_deg", printable(columns)));
+        throw_usage("--plot {}: is not Y:X, such as period_s:angle_max_deg", printable(columns));
     return {find_column(sweep, columns.substr(0, colon)), find_column(sweep, columns.substr(colon + 1))};
 }
 
@@ -176,11 +173,10 @@ SweepPoints read_points(const sweep::SweepDef& sweep, const std::string& folder,
         all.points.push_back(std::move(point));
     });
     if (all.points.empty())
-        throw Error(
-            ExitCode::kUsage,
-            fmt::format("--plot {}:{}: no finished sample in '{}' has both figures (a period needs two "
-                        "passes below the only pin)",
-                        y.name, x.name, folder));
+        throw_usage(
+            "--plot {}:{}: no finished sample in '{}' has both figures (a period needs two passes below the "
+            "only pin)",
+            y.name, x.name, folder);
     return all;
 }
 

@@ -7,7 +7,7 @@
 #include <epoxy/egl.h>
 #include <fmt/format.h>
 
-#include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 #include "corda/gl/driver.hpp"
 #include "corda/gl/egl_display.hpp"
 
@@ -55,12 +55,8 @@ ContextDef ContextDef::parse(std::string_view text) {
     }
     const bool known = def.backend != Backend::kAuto || text == "auto";
     const bool has_index = def.device || def.backend != Backend::kDevice || text == "device";
-    if (!known || !has_index) {
-        throw Error(
-            ExitCode::kUsage,
-            fmt::format("backend \"{}\" is unknown; use auto, device, device:N, surfaceless or default",
-                        text));
-    }
+    if (!known || !has_index)
+        throw_usage("backend \"{}\" is unknown; use auto, device, device:N, surfaceless or default", text);
     return def;
 }
 
@@ -90,7 +86,7 @@ Context::Context(const ContextDef& def) {
         : def.backend != ContextDef::Backend::kAuto
             ? "Take backend auto, or one that `corda doctor` shows as usable"
             : driver_remedy();
-    throw Error(ExitCode::kNoGl, fmt::format("no usable OpenGL. Tried:{}\n{}", reasons, remedy));
+    throw_error(ExitCode::kNoGl, "no usable OpenGL. Tried:{}\n{}", reasons, remedy);
 }
 
 Context::Context(const Platform& platform) : impl_(std::make_unique<Impl>(platform)) {}

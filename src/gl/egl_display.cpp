@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 #include "corda/gl/driver.hpp"
 #include "corda/gl/object.hpp"
 
@@ -43,7 +43,7 @@ std::string egl_error_text() {
 }
 
 [[noreturn]] void fail(const std::string& step) {
-    throw Error(ExitCode::kNoGl, fmt::format("{} failed: {}", step, egl_error_text()));
+    throw_error(ExitCode::kNoGl, "{} failed: {}", step, egl_error_text());
 }
 
 /// True if a display, or the client library for EGL_NO_DISPLAY, has an extension. epoxy_has_egl_extension()

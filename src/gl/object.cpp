@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 
 namespace corda::gl {
 namespace {
@@ -60,8 +60,8 @@ void compile(GLuint shader, const char* source, const std::string& what) {
     GLint compiled = GL_FALSE;
     glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
     if (compiled == GL_TRUE) return;
-    throw Error(ExitCode::kNoGl, fmt::format("the driver cannot compile the {} shader: {}", what,
-                                             log_of(shader, glGetShaderiv, glGetShaderInfoLog)));
+    throw_error(ExitCode::kNoGl, "the driver cannot compile the {} shader: {}", what,
+                log_of(shader, glGetShaderiv, glGetShaderInfoLog));
 }
 
 /// Clears OpenGL's error flags for the next check. A lost context reports errors endlessly, hence the limit.
@@ -79,15 +79,15 @@ void check_errors(const std::string& what) {
         throw Error(ExitCode::kTemporary,
                     what + ": OpenGL is out of memory; take a smaller size, or try again with more memory");
     }
-    throw Error(ExitCode::kNoGl, fmt::format("{}: OpenGL reports {}; see: corda doctor", what,
-                                             text_of(kErrors, error, "GL error")));
+    throw_error(ExitCode::kNoGl, "{}: OpenGL reports {}; see: corda doctor", what,
+                text_of(kErrors, error, "GL error"));
 }
 
 void check_framebuffer(const std::string& what) {
     const GLenum status = glCheckFramebufferStatus(GL_DRAW_FRAMEBUFFER);
     if (status == GL_FRAMEBUFFER_COMPLETE) return;
-    throw Error(ExitCode::kNoGl, fmt::format("{}: OpenGL reports {}; see: corda doctor", what,
-                                             text_of(kFramebufferStates, status, "framebuffer status")));
+    throw_error(ExitCode::kNoGl, "{}: OpenGL reports {}; see: corda doctor", what,
+                text_of(kFramebufferStates, status, "framebuffer status"));
 }
 
 Program::Program(const std::string& name, const char* vertex_source, const char* fragment_source)
@@ -104,8 +104,8 @@ Program::Program(const std::string& name, const char* vertex_source, const char*
     GLint linked = GL_FALSE;
     glGetProgramiv(program_.id(), GL_LINK_STATUS, &linked);
     if (linked == GL_TRUE) return;
-    throw Error(ExitCode::kNoGl, fmt::format("the driver cannot link the {} program: {}", name,
-                                             log_of(program_.id(), glGetProgramiv, glGetProgramInfoLog)));
+    throw_error(ExitCode::kNoGl, "the driver cannot link the {} program: {}", name,
+                log_of(program_.id(), glGetProgramiv, glGetProgramInfoLog));
 }
 
 void Program::use() const {
@@ -122,8 +122,7 @@ void Program::set(const char* uniform, float x, float y) const {
 
 GLint Program::location_of(const char* uniform) const {
     const GLint location = glGetUniformLocation(program_.id(), uniform);
-    if (location < 0)
-        throw Error(ExitCode::kInternal, fmt::format("program {} has no uniform {}", name_, uniform));
+    if (location < 0) throw_error(ExitCode::kInternal, "program {} has no uniform {}", name_, uniform);
     return location;
 }
 
@@ -149,11 +148,10 @@ void PixelBuffer::begin(std::size_t bytes) {
         glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
         buffer_.reset();
         discard_errors();
-        throw Error(
+        throw_error(
             ExitCode::kTemporary,
-            fmt::format("OpenGL has no {} bytes to read pixels into; take a smaller size, or try again with "
-                        "more memory",
-                        bytes));
+            "OpenGL has no {} bytes to read pixels into; take a smaller size, or try again with more memory",
+            bytes);
     }
     bytes_ = bytes;
 }

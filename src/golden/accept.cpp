@@ -68,8 +68,8 @@ std::vector<NewPicture> new_pictures_in(const std::string& folder) {
             pictures.push_back({picture, text("hash"), text("scene_hash"), text("reference_hash")});
         }
     } catch (const std::exception& error) {  // of Json, and kIo
-        throw Error(ExitCode::kUsage, fmt::format("'{}' is no folder that corda golden --new has written: {}",
-                                                  folder, printable(error.what())));
+        throw_usage("'{}' is no folder that corda golden --new has written: {}", folder,
+                    printable(error.what()));
     }
     return pictures;
 }
@@ -198,10 +198,10 @@ SuiteResult accept(const SuiteDef& def) {
     }
     if (result.pictures.empty() && problems.empty()) result.notes.push_back(nothing_text(def, left_out));
     if (!problems.empty())
-        throw Error(ExitCode::kUsage,
-                    fmt::format("nothing is accepted:\n  {}\nrun corda golden --new again, give the "
-                                "same --set, or remove these pictures from their folder",
-                                fmt::join(problems, "\n  ")));
+        throw_usage(
+            "nothing is accepted:\n  {}\nrun corda golden --new again, give the same --set, or remove these "
+            "pictures from their folder",
+            fmt::join(problems, "\n  "));
     if (!def.dry_run) publish(def.folder, files, {});
     return result;
 }

@@ -53,8 +53,7 @@ std::optional<Image> mask_of(const std::string& scene, const GoldenDef& golden) 
         static_cast<void>(compare(blank, blank, &mask));
         return mask;
     } catch (const Error& error) {
-        throw Error(ExitCode::kInvalidScene,
-                    fmt::format("{}: golden.mask: '{}': {}", scene, path, error.what()));
+        throw_error(ExitCode::kInvalidScene, "{}: golden.mask: '{}': {}", scene, path, error.what());
     }
 }
 
@@ -72,19 +71,17 @@ Case make_case(const std::string& path, const SuiteDef& def, std::set<std::strin
     for (const double at_s : made.scene.golden->at_s) {
         const auto within_s = time_within(at_s, made.scene.world.duration_s);
         if (!within_s)
-            throw Error(
-                ExitCode::kInvalidScene,
-                fmt::format("{}: golden.at: {} s is after the end of the motion, {} s; give an earlier time "
-                            "or a longer world.duration",
-                            path, at_s, made.scene.world.duration_s));
+            throw_error(ExitCode::kInvalidScene,
+                        "{}: golden.at: {} s is after the end of the motion, {} s; give an earlier time or a "
+                        "longer world.duration",
+                        path, at_s, made.scene.world.duration_s);
         const double time_s = *within_s;
         made.pictures.push_back(
             {.scene = made.scene.name, .name = name_of(made.scene.name, time_s) + kEnding, .time_s = time_s});
         if (!names.insert(made.pictures.back().name).second)
-            throw Error(ExitCode::kUsage,
-                        fmt::format("two pictures would both be {}; rename '{}', or give times that differ "
-                                    "by 1e-6 s or more",
-                                    made.pictures.back().name, path));
+            throw_usage(
+                "two pictures would both be {}; rename '{}', or give times that differ by 1e-6 s or more",
+                made.pictures.back().name, path);
     }
     return made;
 }
@@ -169,9 +166,8 @@ void select(const SuiteDef& def, std::vector<Case>& cases, std::vector<std::stri
     for (std::size_t i = 0; i < def.only.size(); ++i) {
         if (is_used[i]) continue;
         const auto likely = nearest(def.only[i], std::vector<std::string_view>(known.begin(), known.end()));
-        throw Error(ExitCode::kUsage,
-                    fmt::format("--only {}: no picture and no scene has this name{}", def.only[i],
-                                likely ? fmt::format("; did you mean {}?", *likely) : ""));
+        throw_usage("--only {}: no picture and no scene has this name{}", def.only[i],
+                    likely ? fmt::format("; did you mean {}?", *likely) : "");
     }
 }
 
@@ -208,9 +204,8 @@ std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid,
     const auto load = [&](const std::string& file, bool is_folder) -> std::optional<Case> {
         try {
             if (fs::status(file, none).type() == fs::file_type::not_found && fs::is_symlink(file, none))
-                throw Error(
-                    ExitCode::kInvalidScene,
-                    fmt::format("{}: a link to nothing; restore that file, or remove the link", file));
+                throw_error(ExitCode::kInvalidScene,
+                            "{}: a link to nothing; restore that file, or remove the link", file);
             if (is_folder && is_foreign(file)) {
                 passed_over.push_back(file);
                 return std::nullopt;
@@ -236,16 +231,14 @@ std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid,
             if (made->scene.golden)
                 cases.push_back(std::move(*made));
             else if (!is_folder)
-                throw Error(ExitCode::kUsage, fmt::format("'{}' has no table [golden]; add one, for instance "
-                                                          "[golden] with at = [0.0, 1.0]",
-                                                          file));
+                throw_usage("'{}' has no table [golden]; add one, for instance [golden] with at = [0.0, 1.0]",
+                            file);
         }
     }
     if (cases.empty() && invalid.empty())
-        throw Error(ExitCode::kUsage,
-                    fmt::format("no scene in '{}' has a table [golden]; add one, for instance [golden] with "
-                                "at = [0.0, 1.0]",
-                                def.paths.front()));
+        throw_usage(
+            "no scene in '{}' has a table [golden]; add one, for instance [golden] with at = [0.0, 1.0]",
+            def.paths.front());
     return cases;
 }
 

@@ -50,11 +50,10 @@ std::string keep_artifacts(const std::string& name, const fs::path& golden_folde
     make_folder(stem.parent_path().string());
     std::error_code none;
     if (fs::equivalent(stem.parent_path(), golden_folder, none))
-        throw Error(
-            ExitCode::kUsage,
-            fmt::format("CORDA_GOLDEN_ARTIFACTS is '{}', where the golden pictures are, and the next run "
-                        "would take {}.new.png for one of them; name another folder",
-                        folder, stem.filename().string()));
+        throw_usage(
+            "CORDA_GOLDEN_ARTIFACTS is '{}', where the golden pictures are, and the next run would take "
+            "{}.new.png for one of them; name another folder",
+            folder, stem.filename().string());
     const std::string drawn_path = stem.string() + ".new.png";
     write_png(drawn_path, drawn, {}, {.force = true});
     if (!golden) return "; see " + drawn_path;
@@ -94,8 +93,7 @@ GoldenOutcome update(const fs::path& path, const Image& drawn, const std::string
 
 GoldenOutcome check_golden(const Image& drawn, const std::string& name, const GoldenOptions& options) {
     if (!name.ends_with(golden::kEnding))
-        throw Error(ExitCode::kUsage,
-                    fmt::format("a golden picture's name ends in .png, and '{}' does not", name));
+        throw_usage("a golden picture's name ends in .png, and '{}' does not", name);
     const fs::path path = folder_of(options) / name;
     const fs::path folder = path.parent_path().empty() ? "." : path.parent_path();
     const std::string file = path.filename().string();

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "corda/core/cancel.hpp"
+#include "corda/core/text.hpp"
 #include "corda/golden/perceived.hpp"
 
 namespace corda {
@@ -52,9 +53,8 @@ std::array<std::uint8_t, kChannels> heat(int difference) {
 
 void check_mask(const PixelRect& picture, const Image& mask) {
     if (mask.rect() == picture) return;
-    throw Error(ExitCode::kUsage,
-                fmt::format("the mask has {}x{} pixels, the pictures have {}x{}; give a mask of their size",
-                            mask.width(), mask.height(), picture.width(), picture.height()));
+    throw_usage("the mask has {}x{} pixels, the pictures have {}x{}; give a mask of their size", mask.width(),
+                mask.height(), picture.width(), picture.height());
 }
 
 /// Black in the mask.

@@ -11,6 +11,7 @@
 
 #include "corda/core/cancel.hpp"
 #include "corda/core/machine.hpp"
+#include "corda/core/text.hpp"
 #include "corda/core/workers.hpp"
 #include "corda/golden/cases.hpp"
 #include "corda/golden/perceived.hpp"
@@ -356,10 +357,8 @@ void require_files(const SuiteDef& def, const std::vector<Case>& cases) {
         for (const Checked& picture : one.pictures)
             if (const auto path = fs::path(def.folder) / picture.name;
                 fs::exists(path, none) && !fs::is_regular_file(path, none))
-                throw Error(
-                    ExitCode::kIo,
-                    fmt::format("'{}' is {}, and a picture needs this name; move it away", path.string(),
-                                fs::is_directory(path, none) ? "a folder" : "no file"));
+                throw_error(ExitCode::kIo, "'{}' is {}, and a picture needs this name; move it away",
+                            path.string(), fs::is_directory(path, none) ? "a folder" : "no file");
 }
 
 }  // namespace
@@ -384,8 +383,7 @@ SuiteResult run(const SuiteDef& def) {
         all += std::count_if(one.pictures.begin(), one.pictures.end(),
                              [](const Checked& picture) { return picture.selected; });
         if (def.replan && !one.is_whole())
-            throw Error(ExitCode::kUsage, fmt::format("--replan changes all pictures of '{}'; give --only {}",
-                                                      one.path, one.scene.name));
+            throw_usage("--replan changes all pictures of '{}'; give --only {}", one.path, one.scene.name);
     }
     Runner runner(def, references, all);
     runner.check(cases);

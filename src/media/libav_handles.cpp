@@ -8,9 +8,9 @@
 #include <cstdarg>
 #include <mutex>
 
-#include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/machine.hpp"
+#include "corda/core/text.hpp"
 #include "corda/media/format/format.hpp"
 
 namespace corda::media {
@@ -27,10 +27,10 @@ void* open_library() {
     require_address_space(kAddressBytes, std::string("loading ") + kLibrary, kDataBytes);
     void* const library = dlopen(kLibrary, RTLD_LAZY | RTLD_LOCAL);
     if (library != nullptr) return library;
-    throw Error(ExitCode::kEncoder,
-                fmt::format("the video libraries cannot be loaded: {}; install them (Debian: apt-get install "
-                            "{} libavformat{})",
-                            dlerror(), libavcodec_package(), LIBAVFORMAT_VERSION_MAJOR));
+    throw_error(
+        ExitCode::kEncoder,
+        "the video libraries cannot be loaded: {}; install them (Debian: apt-get install {} libavformat{})",
+        dlerror(), libavcodec_package(), LIBAVFORMAT_VERSION_MAJOR);
 }
 
 void* library() {
@@ -63,10 +63,10 @@ void load_libav() {
 
 void* find_libav_function(const char* name) {
     if (void* const function = dlsym(library(), name)) return function;
-    throw Error(ExitCode::kEncoder,
-                fmt::format("the video libraries are not those that Corda was built for: {}; "
-                            "install the packages of one Debian release",
-                            dlerror()));
+    throw_error(ExitCode::kEncoder,
+                "the video libraries are not those that Corda was built for: {}; install the packages of one "
+                "Debian release",
+                dlerror());
 }
 
 Options& Options::set(const char* name, const std::string& value) {

@@ -5,8 +5,6 @@
 #include <filesystem>
 #include <functional>
 
-#include <fmt/format.h>
-
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/pipeline/film_renderer.hpp"
@@ -115,10 +113,8 @@ void check(const Film& film, const FigureDef& def) {
     if (is_picture_size(def.width_px, def.height_px) && def.columns > 0 &&
         sheet_of(def).holds(video.width_px, video.height_px))
         return;
-    throw Error(ExitCode::kUsage,
-                fmt::format("{} cells of {}x{} pixels in {} do not fit into a contact sheet of {}x{}",
-                            def.times_s.size(), video.width_px, video.height_px,
-                            counted(def.columns, "column"), def.width_px, def.height_px));
+    throw_usage("{} cells of {}x{} pixels in {} do not fit into a contact sheet of {}x{}", def.times_s.size(),
+                video.width_px, video.height_px, counted(def.columns, "column"), def.width_px, def.height_px);
 }
 
 /// The colour between cells: the ground, slightly mixed with the colour of supports.
@@ -208,10 +204,7 @@ std::string ending_of(const std::string& path) {
 std::string vector_bytes(const std::string& ending, Film& film, const FigureDef& def, const PngInfo& info,
                          std::vector<double>& empty_s) {
     check(film, def);
-    if (def.shutter != 0.0) {
-        throw Error(ExitCode::kUsage,
-                    fmt::format("a shutter and {}: lines cannot be blurred; draw a .png", ending));
-    }
+    if (def.shutter != 0.0) throw_usage("a shutter and {}: lines cannot be blurred; draw a .png", ending);
     const VideoDef& video = film.scene().video;
     const bool is_sheet = def.columns > 0;
     render::PageDef page_def{.width_px = is_sheet ? def.width_px : video.width_px,
@@ -246,12 +239,11 @@ FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns) 
     const Sheet sheet(video.width_px, video.height_px, std::max(columns, 1), count);
     if (columns < 1 || !sheet.has_room()) {
         const int most = columns < 1 ? 0 : most_cells(video.width_px, video.height_px, asked);
-        throw Error(
-            ExitCode::kUsage,
-            fmt::format("{} cells{} have no room in a contact sheet of {}x{} pixels (each takes {} at "
-                        "least), {} have; ask for fewer times or a larger size",
-                        count, asked == 0 ? "" : " in " + counted(columns, "column"), video.width_px,
-                        video.height_px, kMinCellPx, most));
+        throw_usage(
+            "{} cells{} have no room in a contact sheet of {}x{} pixels (each takes {} at least), {} have; "
+            "ask for fewer times or a larger size",
+            count, asked == 0 ? "" : " in " + counted(columns, "column"), video.width_px, video.height_px,
+            kMinCellPx, most);
     }
     scene.overlay.time = false;  // it is written below the cell
     video.width_px = sheet.cell_width_px();
@@ -271,10 +263,8 @@ bool is_figure_path(const std::string& path) {
 
 std::vector<double> write_figure(const std::string& path, Film& film, const FigureDef& def,
                                  const PngInfo& info, const OutputOptions& options) {
-    if (!is_figure_path(path)) {
-        throw Error(ExitCode::kUsage,
-                    fmt::format("'{}': figures are written as .png, .svg or .pdf; give such a name", path));
-    }
+    if (!is_figure_path(path))
+        throw_usage("'{}': figures are written as .png, .svg or .pdf; give such a name", path);
     std::vector<double> empty_s;
     const std::string ending = ending_of(path);
     if (ending == ".png") {

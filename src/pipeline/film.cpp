@@ -3,10 +3,9 @@
 #include <cmath>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "corda/core/cancel.hpp"
 #include "corda/core/machine.hpp"
+#include "corda/core/text.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "corda/pipeline/live_plot_data.hpp"
 #include "corda/pipeline/motion.hpp"
@@ -149,8 +148,8 @@ struct Film::Impl {
     /// A time in the form of time_within(). Throws corda::Error (kUsage) if there is no motion at that time.
     [[nodiscard]] double checked_s(double time_s) const {
         if (const auto within_s = pipeline::motion_time_s(scene, time_s)) return *within_s;
-        throw Error(ExitCode::kUsage, fmt::format("{} s is not within 0 .. {} s; world.duration sets the end",
-                                                  time_s, scene.world.duration_s));
+        throw_usage("{} s is not within 0 .. {} s; world.duration sets the end", time_s,
+                    scene.world.duration_s);
     }
 
     const State& at(double time_s) {
@@ -187,9 +186,8 @@ struct Film::Impl {
             const double opacity = view::pose_opacity(k, times_s.size());
             poses.push_back(renderer.add_pose(read(times_s[k], drawing), map, opacity, list));
             if (k > 0 && list.capsules.size() > kMaxPoseCapsules) {
-                throw Error(ExitCode::kUsage,
-                            fmt::format("{} of {} poses have over {} lines in all; ask for fewer times",
-                                        k + 1, times_s.size(), kMaxPoseCapsules));
+                throw_usage("{} of {} poses have over {} lines in all; ask for fewer times", k + 1,
+                            times_s.size(), kMaxPoseCapsules);
             }
         }
         view.draw_supports(drawing.state, map, list);
@@ -218,8 +216,7 @@ struct Film::Impl {
     Damage draw(double time_s, double shutter, DrawContext& by) {
         const pipeline::SharedMotion::Activity drawing_it(*run);
         time_s = checked_s(time_s);
-        if (!(shutter >= 0.0 && shutter <= 1.0))
-            throw Error(ExitCode::kUsage, fmt::format("a shutter of {} is not within 0 .. 1", shutter));
+        if (!(shutter >= 0.0 && shutter <= 1.0)) throw_usage("a shutter of {} is not within 0 .. 1", shutter);
         if (shutter > 0.0) return expose(time_s, shutter, by);
         const view::Camera map = map_at(time_s, by.renderer);
         const State& state = read(time_s, by);
@@ -346,7 +343,7 @@ std::int64_t Film::last_frame() const {
 
 double Film::time_s(std::int64_t k) const {
     if (k >= 0 && k <= last_frame()) return impl_->scene.video.scene_rate().time_s(k);
-    throw Error(ExitCode::kUsage, fmt::format("frame {} is not within 0 .. {}", k, last_frame()));
+    throw_usage("frame {} is not within 0 .. {}", k, last_frame());
 }
 
 const Plan& Film::plan() const {

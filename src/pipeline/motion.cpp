@@ -10,6 +10,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
 #include "corda/core/machine.hpp"
+#include "corda/core/text.hpp"
 #include "corda/pipeline/motion_input.hpp"
 
 namespace corda::pipeline {
@@ -134,12 +135,9 @@ void Motion::fail_diverged(double time_s) const {
     const bool has_step = std::any_of(methods_.begin(), methods_.end(), [](const MethodDef& method) {
         return !std::holds_alternative<ExactDef>(method);
     });
-    throw Error(
-        ExitCode::kDiverged,
-        fmt::format("the simulation diverged before t = {:.6g} s (last good state at {:.6g} s); {} may "
-                    "help{}",
-                    time_s, last_s, divergence_advice(*system_),
-                    has_step ? ", or a smaller solver.step" : ""));
+    throw_error(ExitCode::kDiverged,
+                "the simulation diverged before t = {:.6g} s (last good state at {:.6g} s); {} may help{}",
+                time_s, last_s, divergence_advice(*system_), has_step ? ", or a smaller solver.step" : "");
 }
 
 Energy Motion::energy_of(const State& state) {

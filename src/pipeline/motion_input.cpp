@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 #include "corda/core/timeline.hpp"
 #include "corda/scene/schema.hpp"
 #include "corda/sim/defs.hpp"
@@ -23,9 +23,8 @@ namespace {
 void validate_frame_rate(const Scene& scene) {
     const Rational fps = scene.video.fps.rational();
     if (fps.is_rate()) return;
-    throw Error(ExitCode::kInvalidScene,
-                fmt::format("video.fps: {}/{} is not a fraction of integers within 1 .. {}", fps.num, fps.den,
-                            Rational::kMaxPart));
+    throw_error(ExitCode::kInvalidScene, "video.fps: {}/{} is not a fraction of integers within 1 .. {}",
+                fps.num, fps.den, Rational::kMaxPart);
 }
 
 void validate_frames(const Scene& scene) {
@@ -33,9 +32,9 @@ void validate_frames(const Scene& scene) {
     const double frames = scene.world.duration_s * rate.per_second();
     constexpr auto kMost = static_cast<double>(scene::Limits::kFrames);
     if (frames <= kMost && rate.frame_count(scene.world.duration_s) >= 1) return;
-    throw Error(ExitCode::kInvalidScene,
-                fmt::format("world.duration: {:g} s at {} frames per second are {:g} frames; give 1 .. {}",
-                            scene.world.duration_s, rate.rational().text(), frames, scene::Limits::kFrames));
+    throw_error(ExitCode::kInvalidScene,
+                "world.duration: {:g} s at {} frames per second are {:g} frames; give 1 .. {}",
+                scene.world.duration_s, rate.rational().text(), frames, scene::Limits::kFrames);
 }
 
 /// Relative differences of kinetic energy or velocity below this one come from rounded numbers in the scene.
@@ -242,8 +241,7 @@ void validate(const Scene& scene, std::span<const double> stills_s) {
     static_cast<void>(solvers_of(scene));
     for (const double time_s : stills_s) {
         if (motion_time_s(scene, time_s)) continue;
-        throw Error(ExitCode::kUsage,
-                    fmt::format("stills_s: {} s is not within 0 .. {} s", time_s, scene.world.duration_s));
+        throw_usage("stills_s: {} s is not within 0 .. {} s", time_s, scene.world.duration_s);
     }
 }
 

@@ -1,7 +1,6 @@
 #include "corda/pipeline/panels.hpp"
 
-#include <fmt/format.h>
-
+#include "corda/core/text.hpp"
 #include "corda/view/colors.hpp"
 
 namespace corda {
@@ -19,11 +18,8 @@ int share_px(int k, int count, int side_px) {
 int rows_of(std::size_t scenes, int columns) {
     const auto row = static_cast<std::size_t>(columns);
     if (columns < 1 || scenes == 0 || scenes % row != 0 || scenes > kMaxPanels)
-        throw Error(
-            ExitCode::kUsage,
-            fmt::format("{} scenes do not fill {} columns of at most {} panels; give as many scenes as "
-                        "panels",
-                        scenes, columns, kMaxPanels));
+        throw_usage("{} scenes do not fill {} columns of at most {} panels; give as many scenes as panels",
+                    scenes, columns, kMaxPanels);
     return static_cast<int>(scenes / row);
 }
 
@@ -33,11 +29,10 @@ void lay_out_panels(std::span<Scene> scenes, int columns, int width_px, int heig
     const int rows = rows_of(scenes.size(), columns);
     const auto has_room = [](int count, int side_px) { return count == 1 || side_px >= 2 * count; };
     if (!has_room(columns, width_px) || !has_room(rows, height_px))
-        throw Error(
-            ExitCode::kUsage,
-            fmt::format("{}x{} panels (--panels) have no room in {}x{} pixels (--size); give a size of "
-                        "at least {}x{}, or fewer panels",
-                        columns, rows, width_px, height_px, 2 * columns, 2 * rows));
+        throw_usage(
+            "{}x{} panels (--panels) have no room in {}x{} pixels (--size); give a size of at least {}x{}, "
+            "or fewer panels",
+            columns, rows, width_px, height_px, 2 * columns, 2 * rows);
     for (int i = 0; i < columns * rows; ++i) {
         VideoDef& video = scenes[static_cast<std::size_t>(i)].video;
         video.width_px = share_px(i % columns, columns, width_px);
@@ -57,16 +52,13 @@ VideoDef panels_video(std::span<const Scene> scenes, int columns) {
         const VideoDef& its = scenes[i].video;
         if (its.width_px != scenes[i % row].video.width_px ||
             its.height_px != scenes[i - i % row].video.height_px)
-            throw Error(ExitCode::kUsage,
-                        fmt::format("panel {} of {}x{} pixels fits no grid with the others; "
-                                    "lay all out in one size",
-                                    i, its.width_px, its.height_px));
+            throw_usage("panel {} of {}x{} pixels fits no grid with the others; lay all out in one size", i,
+                        its.width_px, its.height_px);
         if (its.fps.rational() != whole.fps.rational())
-            throw Error(ExitCode::kUsage,
-                        fmt::format("'{}' has {} frames per second and '{}' has {}; panels have one clock: "
-                                    "give all scenes the same video.fps (--fps)",
-                                    scenes[i].name, its.fps.rational().text(), scenes.front().name,
-                                    whole.fps.rational().text()));
+            throw_usage(
+                "'{}' has {} frames per second and '{}' has {}; panels have one clock: give all scenes the "
+                "same video.fps (--fps)",
+                scenes[i].name, its.fps.rational().text(), scenes.front().name, whole.fps.rational().text());
     }
     return whole;
 }

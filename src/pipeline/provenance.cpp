@@ -9,7 +9,6 @@
 #include <zlib.h>
 #include <nlohmann/json.hpp>
 
-#include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/markup.hpp"
 #include "corda/core/text.hpp"
@@ -44,7 +43,7 @@ std::string_view remedy(OriginUse use) {
 
 [[noreturn]] void fail_at(const std::string& path, const std::string& problem,
                           OriginUse use = OriginUse::kFrom) {
-    throw Error(ExitCode::kUsage, fmt::format("'{}' {}; {}", path, problem, remedy(use)));
+    throw_usage("'{}' {}; {}", path, problem, remedy(use));
 }
 
 Json json_of(const PictureOrigin& picture) {
@@ -241,11 +240,9 @@ std::string names_of(const std::vector<Provenance>& parts, const char* separator
 /// Refuses a file without a scene, and one with several.
 void check_scene(const Provenance& provenance, const std::string& path) {
     if (!provenance.parts.empty())
-        throw Error(
-            ExitCode::kUsage,
-            fmt::format("'{}' has several scenes ({}); {}", path, printable(names_of(provenance.parts, ", ")),
-                        provenance.columns > 0 ? "`corda render --from` repeats it"
-                                               : "give one of the videos that it was joined of"));
+        throw_usage("'{}' has several scenes ({}); {}", path, printable(names_of(provenance.parts, ", ")),
+                    provenance.columns > 0 ? "`corda render --from` repeats it"
+                                           : "give one of the videos that it was joined of");
     if (!provenance.scene.empty()) return;
     fail_at(path,
             fmt::format("does not carry its scene, because {}",
@@ -394,9 +391,8 @@ Provenance provenance_in(const PngInfo& info) {
 
 Provenance read_provenance(const std::string& path, OriginUse use) {
     if (path.ends_with(".toml"))
-        throw Error(ExitCode::kUsage,
-                    fmt::format("'{}' is a scene file; {}", path,
-                                use == OriginUse::kJoin ? kVideoRemedy : "give it without --from"));
+        throw_usage("'{}' is a scene file; {}", path,
+                    use == OriginUse::kJoin ? kVideoRemedy : "give it without --from");
     const std::string kind = media::file_kind(path);
     if (kind == "gif" || kind == "apng" || kind == "webp")
         fail_at(path, "is a GIF, an APNG or a WebP; these formats carry no provenance", use);

@@ -69,11 +69,10 @@ void check_chunks(const std::string& path, const std::map<std::string, std::stri
     const auto manifest = media::read_manifest(parts);
     if (!manifest) return;
     if (const auto changes = differences(origin, manifest->made_from); !changes.empty())
-        throw Error(
-            ExitCode::kUsage,
-            fmt::format("'{}' is of another render: {}; make its chunks a video (corda recover), render "
-                        "to another name, or start again (--force without --resume)",
-                        parts, differences_text(changes)));
+        throw_usage(
+            "'{}' is of another render: {}; make its chunks a video (corda recover), render to another name, "
+            "or start again (--force without --resume)",
+            parts, differences_text(changes));
     media::check_chunks_in_child(parts, *manifest);
 }
 
@@ -116,21 +115,19 @@ void check_memory(const media::Format& format, const VideoDef& video, std::size_
     const bool can_be_faster =
         !format.codec->preset_job_bytes.empty() && format.preset_of(video.encoder) != "ultrafast";
     const char* const faster = can_be_faster ? "a faster preset (--preset ultrafast), " : "";
-    throw Error(
-        ExitCode::kTemporary,
-        fmt::format(
-            "{} of {}x{} pixels takes some {:.1f} GiB of memory, and {:.1f} are free; choose a smaller "
-            "size, {}or a machine with more",
-            format.words(), video.width_px, video.height_px, static_cast<double>(bytes) / kGib,
-            static_cast<double>(available_memory_bytes().value_or(0)) / kGib, faster));
+    throw_error(ExitCode::kTemporary,
+                "{} of {}x{} pixels takes some {:.1f} GiB of memory, and {:.1f} are free; choose a smaller "
+                "size, {}or a machine with more",
+                format.words(), video.width_px, video.height_px, static_cast<double>(bytes) / kGib,
+                static_cast<double>(available_memory_bytes().value_or(0)) / kGib, faster);
 }
 
 /// Adds to the message of a divergence where the frames before it are.
 [[noreturn]] void keep_diverged(const Error& error, const std::string& path, media::VideoWriter& writer) {
     const std::string kept = writer.abandon();
     if (kept.empty()) throw Error(error.code(), error.what());
-    throw Error(error.code(), fmt::format("{}; the {} frames before it are in {}; {} was not written",
-                                          error.what(), writer.frames(), kept, path));
+    throw_error(error.code(), "{}; the {} frames before it are in {}; {} was not written", error.what(),
+                writer.frames(), kept, path);
 }
 
 /// Counts an empty frame of a Rendered or a Made.
@@ -268,13 +265,12 @@ void check_ground(const Scene& scene, const media::Format& format) {
     if (ground.is_opaque() || format.has_alpha) return;
     const Color clear = ground.top.a < 255 ? ground.top : ground.bottom;
     const bool has_other = media::can_be_transparent(*format.ending);
-    throw Error(
-        ExitCode::kUsage,
-        fmt::format("style.background: \"{}\" is transparent, and {} cannot be; give an opaque colour "
-                    "(--set style.background=#ffffff), {}",
-                    clear.text(), format.words(),
-                    has_other ? "or leave out video.codec and video.pix, as another encoder can"
-                              : "draw stills as .png, or a video as " + media::endings_with_alpha()));
+    throw_usage(
+        "style.background: \"{}\" is transparent, and {} cannot be; give an opaque colour (--set "
+        "style.background=#ffffff), {}",
+        clear.text(), format.words(),
+        has_other ? "or leave out video.codec and video.pix, as another encoder can"
+                  : "draw stills as .png, or a video as " + media::endings_with_alpha());
 }
 
 /// The output of frames first <= k < end with everything checked but the encoder's start.
@@ -330,10 +326,8 @@ CheckedOutput check_render(std::span<const Scene> panels, int columns, const std
     }
     const std::int64_t end = def.end.value_or(count);
     if (def.first < 0 || def.first >= end || end > count) {
-        throw Error(
-            ExitCode::kUsage,
-            fmt::format("frames {}:{} are not FIRST:END with 0 <= FIRST < END <= {} (END is not drawn)",
-                        def.first, end, count));
+        throw_usage("frames {}:{} are not FIRST:END with 0 <= FIRST < END <= {} (END is not drawn)",
+                    def.first, end, count);
     }
     std::int64_t total = end - def.first;
     const CancelScope starting([&] { report_progress(def.on_progress, 0, total); });
@@ -353,12 +347,11 @@ Rendered render_video(std::span<Film> films, const CheckedOutput& output, const 
     const VideoDef& shown = panels.video;
     if (shown.width_px != video.def.width_px || shown.height_px != video.def.height_px ||
         shown.fps.rational() != video.def.fps.rational()) {
-        throw Error(
-            ExitCode::kUsage,
-            fmt::format("'{}' was checked for {}x{} at {} frames per second, and the film has {}x{} "
-                        "at {}; check the output with the scene of the film",
-                        video.path, video.def.width_px, video.def.height_px, video.def.fps.rational().text(),
-                        shown.width_px, shown.height_px, shown.fps.rational().text()));
+        throw_usage(
+            "'{}' was checked for {}x{} at {} frames per second, and the film has {}x{} at {}; check the "
+            "output with the scene of the film",
+            video.path, video.def.width_px, video.def.height_px, video.def.fps.rational().text(),
+            shown.width_px, shown.height_px, shown.fps.rational().text());
     }
     pipeline::Nested<pipeline::SharedMotion::Activity> rendering;
     for (Film& film : films) rendering.emplace_back(FilmRenderer::motion_of(film));

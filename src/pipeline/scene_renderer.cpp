@@ -1,7 +1,5 @@
 #include "corda/pipeline/scene_renderer.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
+#include "corda/core/text.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/pipeline/tracked_particle.hpp"
@@ -245,8 +244,7 @@ std::vector<std::uint8_t> SceneRenderer::mask(const State& state, const view::Ca
     constexpr std::size_t kMaxDistinct = 255;
     const std::size_t bodies = system_->bodies.size();
     if (bodies > kMaxDistinct)
-        throw Error(ExitCode::kUsage, fmt::format("a mask distinguishes {} bodies, and the scene has {}",
-                                                  kMaxDistinct, bodies));
+        throw_usage("a mask distinguishes {} bodies, and the scene has {}", kMaxDistinct, bodies);
     view_.start(list_);
     std::vector<std::uint8_t> mask(static_cast<std::size_t>(list_.width) * list_.height);
     for (std::size_t i = 0; i < bodies; ++i) {
@@ -350,16 +348,15 @@ const CameraDef& Renderer::camera() const {
 Image Renderer::draw(std::span<const Vec2> positions_m) {
     const std::size_t count = impl_->system.particle_count();
     if (positions_m.size() != count) {
-        throw Error(ExitCode::kUsage,
-                    fmt::format("{} positions for the {} particles of the scene; give one each",
-                                positions_m.size(), count));
+        throw_usage("{} positions for the {} particles of the scene; give one each", positions_m.size(),
+                    count);
     }
     State& state = impl_->state;
     state.x_m.resize(count);
     state.y_m.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         if (!std::isfinite(positions_m[i].x) || !std::isfinite(positions_m[i].y))
-            throw Error(ExitCode::kUsage, fmt::format("position {} is not finite", i));
+            throw_usage("position {} is not finite", i);
         state.x_m[i] = positions_m[i].x - impl_->system.origin_m.x;
         state.y_m[i] = positions_m[i].y - impl_->system.origin_m.y;
     }

@@ -12,8 +12,8 @@
 
 #include <fmt/format.h>
 
-#include "corda/core/basics.hpp"
 #include "corda/core/child_process.hpp"
+#include "corda/core/text.hpp"
 #include "corda/gl/driver.hpp"
 #include "corda/view/draw_list.hpp"
 
@@ -101,9 +101,10 @@ void try_driver(const gl::ContextDef& def) {
         known = fates.emplace(key, *fate).first;
     }
     if (known->second.empty()) return;
-    throw Error(ExitCode::kNoGl, fmt::format("the OpenGL driver {} when it was tried in a child process\n"
-                                             "Unset what chooses or changes the driver: {}",
-                                             known->second, gl::driver_variables()));
+    throw_error(ExitCode::kNoGl,
+                "the OpenGL driver {} when it was tried in a child process\nUnset what chooses or changes "
+                "the driver: {}",
+                known->second, gl::driver_variables());
 }
 
 void check_driver(const gl::Context& context, const FrameRenderer& renderer, bool with_tints) {
@@ -123,12 +124,10 @@ void check_driver(const gl::Context& context, const FrameRenderer& renderer, boo
         if (!difference) continue;
         gl::note_faulty_driver();
         const std::string variables = gl::driver_variables();
-        throw Error(
-            ExitCode::kNoGl,
-            fmt::format("the driver draws wrongly: {}. Driver: {}\n{}", *difference, driver,
-                        variables.empty() ? "Choose another driver by --backend (`corda doctor` checks "
-                                            "each), or install another version of it"
-                                          : "Unset what chooses or changes the driver: " + variables));
+        throw_error(ExitCode::kNoGl, "the driver draws wrongly: {}. Driver: {}\n{}", *difference, driver,
+                    variables.empty() ? "Choose another driver by --backend (`corda doctor` checks each), or "
+                                        "install another version of it"
+                                      : "Unset what chooses or changes the driver: " + variables);
     }
     checked.insert(key);
 }

@@ -16,6 +16,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
 #include "corda/core/machine.hpp"
+#include "corda/core/text.hpp"
 #include "corda/gl/object.hpp"
 #include "corda/render/paint.hpp"
 #include "embedded_shaders.hpp"
@@ -60,10 +61,10 @@ void check_size(int width, int height) {
     const int widest = std::min(largest_texture_px, largest_viewport_px[0]);
     const int highest = std::min(largest_texture_px, largest_viewport_px[1]);
     if (width <= widest && height <= highest) return;
-    throw Error(ExitCode::kNoGl,
-                fmt::format("a frame of {}x{} pixels is larger than this OpenGL can draw ({}x{}); choose a "
-                            "smaller video.size",
-                            width, height, widest, highest));
+    throw_error(
+        ExitCode::kNoGl,
+        "a frame of {}x{} pixels is larger than this OpenGL can draw ({}x{}); choose a smaller video.size",
+        width, height, widest, highest);
 }
 
 /// Per pixel: the image, and the masks in a format that the driver chooses.

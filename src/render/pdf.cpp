@@ -1,6 +1,5 @@
 #include <cairo-ft.h>
 #include <cairo-pdf.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -40,8 +39,7 @@ cairo_status_t append_bytes(void* file, const unsigned char* bytes, unsigned cou
 void check(cairo_status_t status) {
     if (status == CAIRO_STATUS_SUCCESS) return;
     if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
-    throw Error(ExitCode::kInternal,
-                fmt::format("cairo cannot draw the PDF: {}", cairo_status_to_string(status)));
+    throw_error(ExitCode::kInternal, "cairo cannot draw the PDF: {}", cairo_status_to_string(status));
 }
 
 Pattern solid(const Color& color) {

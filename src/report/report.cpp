@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "corda/core/basics.hpp"
 #include "corda/core/csv.hpp"
+#include "corda/core/text.hpp"
 #include "corda/report/writers.hpp"
 
 namespace corda::report {
@@ -21,13 +21,9 @@ constexpr double kMaxInFull = 1e6;
 void check_name(const std::string& name, const char* kind, std::set<std::string>& seen) {
     const bool is_plain =
         !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
-    if (!is_plain) {
-        throw Error(ExitCode::kInternal,
-                    fmt::format("the {} '{}' of a report is not [a-z0-9_]+", kind, name));
-    }
-    if (!seen.insert(name).second) {
-        throw Error(ExitCode::kInternal, fmt::format("a report has the {} '{}' twice", kind, name));
-    }
+    if (!is_plain) throw_error(ExitCode::kInternal, "the {} '{}' of a report is not [a-z0-9_]+", kind, name);
+    if (!seen.insert(name).second)
+        throw_error(ExitCode::kInternal, "a report has the {} '{}' twice", kind, name);
 }
 
 void check_table(const Table& table) {
@@ -35,8 +31,8 @@ void check_table(const Table& table) {
     for (const Column& column : table.columns) check_name(column.key, "column key", keys);
     for (const auto& row : table.rows) {
         if (row.size() == table.columns.size()) continue;
-        throw Error(ExitCode::kInternal, fmt::format("a row of table '{}' has {} cells for {} columns",
-                                                     table.id, row.size(), table.columns.size()));
+        throw_error(ExitCode::kInternal, "a row of table '{}' has {} cells for {} columns", table.id,
+                    row.size(), table.columns.size());
     }
 }
 

@@ -1,7 +1,5 @@
 #include "corda/scene/document.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <exception>
 #include <istream>
@@ -10,6 +8,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
+#include "corda/core/text.hpp"
 #include "corda/scene/read_file.hpp"
 
 namespace corda::scene {
@@ -120,9 +119,9 @@ toml::table parse_document(std::string_view text, const std::string& source_name
             1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(deep), '\n');
         const std::size_t line_end = text.substr(0, deep).rfind('\n');
         const std::size_t column = line_end == std::string_view::npos ? deep + 1 : deep - line_end;
-        throw Error(ExitCode::kInvalidScene,
-                    fmt::format("{}:{}:{}: a key of more than {} parts; give a key of the scene format",
-                                source_name, line, column, kKeyParts));
+        throw_error(ExitCode::kInvalidScene,
+                    "{}:{}:{}: a key of more than {} parts; give a key of the scene format", source_name,
+                    line, column, kKeyParts);
     }
     CancellableBuffer buffer(text);
     std::istream stream(&buffer);
@@ -133,9 +132,8 @@ toml::table parse_document(std::string_view text, const std::string& source_name
     } catch (const toml::parse_error& error) {
         buffer.check();
         const auto& begin = error.source().begin;
-        throw Error(ExitCode::kInvalidScene,
-                    fmt::format("{}:{}:{}: {}; see https://toml.io for the syntax", source_name, begin.line,
-                                begin.column, error.description()));
+        throw_error(ExitCode::kInvalidScene, "{}:{}:{}: {}; see https://toml.io for the syntax", source_name,
+                    begin.line, begin.column, error.description());
     }
 }
 

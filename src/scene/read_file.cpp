@@ -1,6 +1,5 @@
 #include "corda/scene/read_file.hpp"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <array>
@@ -8,23 +7,20 @@
 #include <cstdio>
 #include <system_error>
 
-#include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
+#include "corda/core/text.hpp"
 #include "corda/scene/schema.hpp"
 
 namespace corda::scene {
 namespace {
 
 [[noreturn]] void fail_io(const std::string& path, std::string_view what, int reason) {
-    if (reason == EINTR) {
-        throw Error(ExitCode::kInterrupted,
-                    fmt::format("{}: interrupted while waiting for the {}", path, what));
-    }
+    if (reason == EINTR)
+        throw_error(ExitCode::kInterrupted, "{}: interrupted while waiting for the {}", path, what);
     const bool is_denied = reason == EACCES || reason == EPERM;
-    throw Error(ExitCode::kIo, fmt::format("{}: cannot read the {} file: {}; {}", path, what,
-                                           std::generic_category().message(reason),
-                                           is_denied ? hint_for_errno(reason, FileUse::kRead)
-                                                     : "give the path of a TOML file"));
+    throw_error(ExitCode::kIo, "{}: cannot read the {} file: {}; {}", path, what,
+                std::generic_category().message(reason),
+                is_denied ? hint_for_errno(reason, FileUse::kRead) : "give the path of a TOML file");
 }
 
 /// Standard input stays open: closing it would give its number to the next file.
@@ -57,10 +53,9 @@ std::string source_name(const std::string& path) {
 
 void check_file_bytes(const std::string& source_name, std::size_t bytes) {
     if (bytes <= static_cast<std::size_t>(Limits::kFileBytes)) return;
-    throw Error(
-        ExitCode::kInvalidScene,
-        fmt::format("{}: {} bytes or more are over the limit of {} bytes; a scene has fewer particles",
-                    source_name, bytes, Limits::kFileBytes));
+    throw_error(ExitCode::kInvalidScene,
+                "{}: {} bytes or more are over the limit of {} bytes; a scene has fewer particles",
+                source_name, bytes, Limits::kFileBytes);
 }
 
 }  // namespace corda::scene

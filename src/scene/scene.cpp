@@ -7,6 +7,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
+#include "corda/core/text.hpp"
 #include "corda/scene/check_limits.hpp"
 #include "corda/scene/document.hpp"
 #include "corda/scene/field.hpp"
@@ -131,7 +132,7 @@ std::vector<SolverDef> solvers_of(const Scene& scene) {
     for (std::size_t i = 0; i < scene.body_solvers.size(); ++i) {
         const BodySolverDef& group = scene.body_solvers[i];
         const auto fail = [&](const std::string& problem) {
-            throw Error(ExitCode::kInvalidScene, fmt::format("body_solvers[{}]: {}", i, problem));
+            throw_error(ExitCode::kInvalidScene, "body_solvers[{}]: {}", i, problem);
         };
         const auto name = [&](std::uint32_t index, std::size_t first, std::size_t count, const char* what) {
             if (index >= count) fail(fmt::format("names {} {} of {}", what, index, count));

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 #include "corda/scene/document.hpp"
 
 namespace corda::scene {
@@ -135,7 +135,7 @@ class SettingWriter {
 
     [[noreturn]] void fail(const std::string& problem) const {
         const std::string place = path_.empty() ? label_ : fmt::format("{}: {}", label_, path_);
-        throw Error(ExitCode::kInvalidScene, fmt::format("{}: {}", place, problem));
+        throw_error(ExitCode::kInvalidScene, "{}: {}", place, problem);
     }
 
     toml::node* node_;
@@ -169,7 +169,7 @@ void apply_setting(toml::table& document, const Setting& setting, Problems& prob
     const auto refuse = [&](std::string_view problem) {
         const char* const advice =
             place.empty() ? "; give --set key=value, e.g. --set video.fps=30 or --set rope[0].mass=2" : "";
-        throw Error(ExitCode::kUsage, fmt::format("{}: {}{}", label, problem, advice));
+        throw_usage("{}: {}{}", label, problem, advice);
     };
     const std::size_t equals = setting.find('=');
     if (equals == std::string::npos) refuse("there is no '='");

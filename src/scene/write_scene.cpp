@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "corda/core/basics.hpp"
 #include "corda/core/text.hpp"
 #include "corda/scene/document.hpp"
 #include "corda/scene/field.hpp"
@@ -25,7 +24,7 @@ namespace {
 constexpr std::string_view kHashed = "hash ";
 
 [[noreturn]] void fail_unwritable(const std::string& problem) {
-    throw Error(ExitCode::kUsage, fmt::format("a scene file cannot give this scene: {}", problem));
+    throw_usage("a scene file cannot give this scene: {}", problem);
 }
 
 /// A definition that fills a part of a table.

@@ -1,6 +1,5 @@
 #include "corda/serve/file_watch.hpp"
 
-#include <fmt/format.h>
 #include <poll.h>
 #include <sys/inotify.h>
 #include <sys/stat.h>
@@ -12,7 +11,7 @@
 #include <system_error>
 #include <utility>
 
-#include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 
 namespace corda::serve {
 
@@ -25,10 +24,9 @@ FileWatch::FileWatch(const std::string& path)
         return;
     const int reason = errno;
     if (reason != EMFILE && reason != ENFILE && reason != ENOSPC) fail_file("watch", path, reason);
-    throw Error(ExitCode::kTemporary,
-                fmt::format("cannot watch '{}': {}; raise fs.inotify.max_user_instances "
-                            "and fs.inotify.max_user_watches",
-                            path, std::generic_category().message(reason)));
+    throw_error(ExitCode::kTemporary,
+                "cannot watch '{}': {}; raise fs.inotify.max_user_instances and fs.inotify.max_user_watches",
+                path, std::generic_category().message(reason));
 }
 
 bool FileWatch::wait(int timeout_ms) {

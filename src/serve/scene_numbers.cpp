@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "corda/core/basics.hpp"
 #include "corda/core/text.hpp"
 #include "corda/scene/document.hpp"
 #include "corda/scene/schema.hpp"
@@ -120,8 +119,7 @@ std::string with_changes(std::string text, const std::string& name, const Number
     for (const auto& change : changes)
         if (std::none_of(all.begin(), all.end(),
                          [&](const Found& its) { return its.number.key == change.first; }))
-            throw Error(ExitCode::kUsage,
-                        fmt::format("{} has no number {} any more", name, printable(change.first)));
+            throw_usage("{} has no number {} any more", name, printable(change.first));
     std::reverse(all.begin(), all.end());  // so that a change does not move the places of the others
     for (const auto& [number, region] : all) {
         const auto change = changes.find(number.key);

@@ -17,7 +17,6 @@
 #include <system_error>
 #include <utility>
 
-#include "corda/core/basics.hpp"
 #include "corda/core/loaded_function.hpp"
 #include "corda/core/text.hpp"
 
@@ -32,9 +31,9 @@ void* find_httpd_function(const char* name) {
     void* const library = dlopen("libmicrohttpd.so.12", RTLD_NOW | RTLD_LOCAL);  // it stays loaded
     void* const function = library == nullptr ? nullptr : dlsym(library, name);
     if (function != nullptr) return function;
-    throw Error(ExitCode::kTemporary, fmt::format("the web server cannot be loaded: {}; install it (Debian: "
-                                                  "apt-get install libmicrohttpd12)",
-                                                  dlerror()));
+    throw_error(ExitCode::kTemporary,
+                "the web server cannot be loaded: {}; install it (Debian: apt-get install libmicrohttpd12)",
+                dlerror());
 }
 
 // Within this namespace these names stand for those of libmicrohttpd, which the program is not linked with.
@@ -239,9 +238,8 @@ Server::Server(const ServerDef& def, Handler handler) : impl_(std::make_unique<I
         MHD_OPTION_CONNECTION_LIMIT, kMaxConnections, MHD_OPTION_CONNECTION_TIMEOUT, kSilentSeconds,
         MHD_OPTION_NOTIFY_COMPLETED, &free_body, nullptr, MHD_OPTION_END);
     if (impl_->daemon == nullptr)
-        throw Error(ExitCode::kIo,
-                    fmt::format("cannot serve at 127.0.0.1:{}: {}; give another --port, or none", def.port,
-                                std::generic_category().message(errno)));
+        throw_error(ExitCode::kIo, "cannot serve at 127.0.0.1:{}: {}; give another --port, or none", def.port,
+                    std::generic_category().message(errno));
     const auto get_daemon_info =
         reinterpret_cast<decltype(&::MHD_get_daemon_info)>(find_httpd_function("MHD_get_daemon_info"));
     const MHD_DaemonInfo* const info = get_daemon_info(impl_->daemon, MHD_DAEMON_INFO_BIND_PORT);

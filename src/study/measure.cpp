@@ -11,6 +11,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
 #include "corda/core/machine.hpp"
+#include "corda/core/text.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::study {
@@ -125,8 +126,7 @@ void Probe::go(double time_s) {
     const double from_s = now_s();
     const Status status = simulation_.advance_to(time_s);
     wall_s_ += now_s() - from_s;
-    if (status == Status::kDiverged)
-        throw Error(ExitCode::kDiverged, fmt::format("diverged before {:.6g} s", time_s));
+    if (status == Status::kDiverged) throw_error(ExitCode::kDiverged, "diverged before {:.6g} s", time_s);
 }
 
 void Probe::go_by_frames(double time_s, double frames_per_second) {

@@ -195,10 +195,10 @@ void find_truth(Subject& subject) {
     const bool has_rattle = refusal(problem, RattleDef{8}).empty();
     if (!has_exact && !has_rattle) {
         if (!refusal(problem, RelaxationDef{}).empty()) {
-            throw Error(ExitCode::kInvalidScene,
-                        fmt::format("{}: no method moves all of its bodies, and a study compares methods; "
-                                    "study bodies that differ in kind in scenes of their own ({})",
-                                    problem.title, exact_refusal));
+            throw_error(ExitCode::kInvalidScene,
+                        "{}: no method moves all of its bodies, and a study compares methods; study bodies "
+                        "that differ in kind in scenes of their own ({})",
+                        problem.title, exact_refusal);
         }
         problem.truth =
             "none, because no method can tell how this scene truly moves; errors of positions are not given";

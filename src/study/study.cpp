@@ -33,15 +33,11 @@ void check_chapters(const StudyDef& def) {
     for (const std::string& name : def.chapters) {
         const auto kind = std::find_if(kChapters.begin(), kChapters.end(),
                                        [&](const ChapterKind& one) { return one.name == name; });
-        if (kind == kChapters.end()) {
-            throw Error(ExitCode::kUsage, fmt::format("there is no chapter \"{}\"; known are {}", name,
-                                                      fmt::join(chapter_names(), ", ")));
-        }
+        if (kind == kChapters.end())
+            throw_usage("there is no chapter \"{}\"; known are {}", name, fmt::join(chapter_names(), ", "));
         if (def.scene && !kind->takes_a_scene) {
-            throw Error(
-                ExitCode::kUsage,
-                fmt::format("chapter \"{}\" is about built-in problems; leave out the scene or the chapter",
-                            name));
+            throw_usage("chapter \"{}\" is about built-in problems; leave out the scene or the chapter",
+                        name);
         }
     }
 }

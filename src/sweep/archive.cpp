@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <initializer_list>
 
-#include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 #include "corda/media/bytes.hpp"
 
 namespace corda::sweep {
@@ -54,8 +54,7 @@ void append(std::string& text, std::initializer_list<std::string_view> parts) {
 }
 
 void check_zip_bytes(std::uint64_t bytes, std::string_view remedy) {
-    if (bytes > 0xffffffffU)
-        throw Error(ExitCode::kUsage, fmt::format("the arrays of an .npz file are over 4 GiB; {}", remedy));
+    if (bytes > 0xffffffffU) throw_usage("the arrays of an .npz file are over 4 GiB; {}", remedy);
 }
 
 /// Compressed bytes without the head and the checksum of a zlib stream.

@@ -34,11 +34,10 @@ Json draw(const Distribution& distribution, std::size_t component, Random random
         const double value = first + second * random.normal();
         if (value >= distribution.min[component] && value <= distribution.max[component]) return value;
     }
-    throw Error(
+    throw_error(
         ExitCode::kInvalidScene,
-        fmt::format("vary.\"{}\": of {} numbers of the normal distribution none was within its bounds; "
-                    "give wider bounds",
-                    key, kMaxTries));
+        "vary.\"{}\": of {} numbers of the normal distribution none was within its bounds; give wider bounds",
+        key, kMaxTries);
 }
 
 }  // namespace

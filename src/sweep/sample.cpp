@@ -66,16 +66,14 @@ Sample SampleMaker::make(std::int64_t number) {
         make_of(scene_of(*sweep_, sample.parameters), sample);
     } catch (const Error& error) {
         if (is_interruption(error.code())) throw;
-        if (!is_refusal(error.code()))
-            throw Error(error.code(), fmt::format("sample {}: {}", sample.key, error.what()));
+        if (!is_refusal(error.code())) throw_error(error.code(), "sample {}: {}", sample.key, error.what());
         sample.failure = {error.code(), error.what()};
         sample.arrays.clear();
         sample.pictures.clear();
     } catch (const std::bad_alloc&) {
-        throw Error(
-            ExitCode::kTemporary,
-            fmt::format("sample {}: out of memory; a smaller scene or picture, or fewer jobs, may help",
-                        sample.key));
+        throw_error(ExitCode::kTemporary,
+                    "sample {}: out of memory; a smaller scene or picture, or fewer jobs, may help",
+                    sample.key);
     }
     return sample;
 }

@@ -68,8 +68,7 @@ bool is_plain(const std::string& path) {
 
 void refuse_unusual(const std::string& path) {
     if (exists(path) && !is_plain(path))
-        throw Error(ExitCode::kIo,
-                    fmt::format("'{}' is no ordinary file; move it away, or choose another folder", path));
+        throw_error(ExitCode::kIo, "'{}' is no ordinary file; move it away, or choose another folder", path);
 }
 
 /// The JSON object in a file; std::nullopt if there is none that is nested as little as Corda's.
@@ -104,17 +103,14 @@ void require_same(const SweepDef& sweep, const std::map<std::string, std::string
                   const std::string& path) {
     const auto changes = differences(identity_of(sweep), origin);
     if (!changes.empty())
-        throw Error(ExitCode::kUsage,
-                    fmt::format("'{}' is of another sweep: {}; choose another folder, move it "
-                                "away, or replace all shards (--force)",
-                                path, differences_text(changes)));
+        throw_usage(
+            "'{}' is of another sweep: {}; choose another folder, move it away, or replace all shards "
+            "(--force)",
+            path, differences_text(changes));
 }
 
 [[noreturn]] void fail_larger(const std::string& path) {
-    throw Error(
-        ExitCode::kUsage,
-        fmt::format("'{}' is of a sweep of more samples; move it away, or replace all shards (--force)",
-                    path));
+    throw_usage("'{}' is of a sweep of more samples; move it away, or replace all shards (--force)", path);
 }
 
 /// The origin in the manifest; std::nullopt if there is no manifest.
@@ -124,9 +120,8 @@ std::optional<std::map<std::string, std::string>> manifest_origin(const std::str
     try {
         return origin_of(read_json(path).value_or(Json::object()));
     } catch (const Json::exception&) {
-        throw Error(ExitCode::kIo, fmt::format("'{}' is no manifest of a sweep; move it away, or "
-                                               "choose another folder",
-                                               path));
+        throw_error(ExitCode::kIo, "'{}' is no manifest of a sweep; move it away, or choose another folder",
+                    path);
     }
 }
 
@@ -224,10 +219,9 @@ void open_folder(const SweepDef& sweep, const std::string& folder, bool force) {
     const bool has_manifest = origin.has_value();
     if (!origin) origin = index_origin(folder, files);
     if (!origin && !files.empty())
-        throw Error(ExitCode::kIo,
-                    fmt::format("'{}' is there, and no manifest of a sweep; move it away, or choose "
-                                "another folder",
-                                (fs::path(folder) / files.front()).string()));
+        throw_error(ExitCode::kIo,
+                    "'{}' is there, and no manifest of a sweep; move it away, or choose another folder",
+                    (fs::path(folder) / files.front()).string());
     if (!has_manifest) {
         OutputFile file(manifest_path(folder));
         file.write(text_of(empty_manifest(sweep)));

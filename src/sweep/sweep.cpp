@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "corda/core/cancel.hpp"
+#include "corda/core/text.hpp"
 #include "corda/core/workers.hpp"
 #include "corda/media/bytes.hpp"
 #include "corda/media/encode/resources.hpp"
@@ -129,7 +130,7 @@ void make_shards(const SweepDef& sweep, const RunDef& def, const std::vector<std
 void check_shard(const SweepDef& sweep, const std::string& folder, std::int64_t shard) {
     const std::string path = shard_path(folder, shard);
     const auto fail = [&path](const std::string& problem) {
-        throw Error(ExitCode::kMismatch, fmt::format("'{}' {}", path, problem));
+        throw_error(ExitCode::kMismatch, "'{}' {}", path, problem);
     };
     const auto index = find_index(sweep, folder, shard);
     std::error_code ignored;
@@ -144,9 +145,8 @@ void check_shard(const SweepDef& sweep, const std::string& folder, std::int64_t 
 /// Throws corda::Error (kMismatch) if a file differs from the summary of the shards.
 void check_text(const std::string& path, std::string_view expected) {
     if (read_plain_file(path) != expected)
-        throw Error(
-            ExitCode::kMismatch,
-            fmt::format("'{}' does not say what the shards hold; remove it, and run the sweep again", path));
+        throw_error(ExitCode::kMismatch,
+                    "'{}' does not say what the shards hold; remove it, and run the sweep again", path);
 }
 
 }  // namespace

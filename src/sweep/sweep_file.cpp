@@ -454,8 +454,7 @@ SweepDef load_sweep(const std::string& path) {
         sweep.scene_toml = scene::read_file((folder / sweep.scene_name).string());
     } catch (const Error& error) {
         const toml::source_position at = document.get("scene")->source().begin;
-        throw Error(error.code(),
-                    fmt::format("{}:{}:{}: scene: {}", sweep.source, at.line, at.column, error.what()));
+        throw_error(error.code(), "{}:{}:{}: scene: {}", sweep.source, at.line, at.column, error.what());
     }
     const Scene scene =
         parse_scene(sweep.scene_toml, sweep.scene_name);  // the sweep's end if it is not sound

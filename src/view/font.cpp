@@ -12,7 +12,7 @@
 #include <ft2build.h>
 #include FT_FREETYPE_H
 
-#include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 
 // DejaVu Sans as Debian ships it; its licence (of Bitstream Vera) allows copies as part of programs. The
 // assembler reads the file: as an array it would take the compiler half a minute.
@@ -115,8 +115,7 @@ struct Font::Impl {
         const FT_GlyphSlot slot = face->glyph;
         const FT_Bitmap& bitmap = slot->bitmap;
         if (bitmap.rows > 0 && bitmap.pixel_mode != FT_PIXEL_MODE_GRAY)
-            throw Error(ExitCode::kInternal,
-                        fmt::format("FreeType: a glyph of {} pixels has no levels of grey", size_px));
+            throw_error(ExitCode::kInternal, "FreeType: a glyph of {} pixels has no levels of grey", size_px);
         Glyph glyph;
         glyph.left_px = slot->bitmap_left;
         glyph.top_px = slot->bitmap_top;

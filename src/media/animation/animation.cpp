@@ -1,12 +1,12 @@
 #include "corda/media/animation/animation.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cassert>
 #include <cstring>
 #include <string_view>
 #include <utility>
 
+#include "corda/core/text.hpp"
 #include "corda/media/encode/pixels.hpp"
 
 namespace corda::media {
@@ -39,7 +39,7 @@ void LosslessFrames::enter(std::int64_t k) {
 
 void LosslessFrames::decode() {
     if (!decoder_->read())
-        throw Error(ExitCode::kIo, fmt::format("'{}' changed while it was read", chunks_[chunk_ - 1].path));
+        throw_error(ExitCode::kIo, "'{}' changed while it was read", chunks_[chunk_ - 1].path);
     ++next_;
 }
 
@@ -47,7 +47,7 @@ void LosslessFrames::read(Image& picture) {
     enter(next_);
     decode();
     if (!copy_exact(decoder_->frame(), picture))
-        throw Error(ExitCode::kIo, fmt::format("'{}' holds no lossless R'G'B'", chunks_[chunk_ - 1].path));
+        throw_error(ExitCode::kIo, "'{}' holds no lossless R'G'B'", chunks_[chunk_ - 1].path);
 }
 
 void LosslessFrames::go_to(std::int64_t k) {
@@ -82,10 +82,8 @@ PictureChange LosslessFrames::change() const {
 void check_animation_frames(const Ending& ending, std::int64_t frames) {
     if (ending.kind != FileKind::kAnimation || frames != 1 || find_codec(ending.muxer)->min_frames == 1)
         return;
-    throw Error(ExitCode::kUsage,
-                fmt::format("{} holds one frame as a picture, which has no duration; use .apng, or .png "
-                            "(corda still)",
-                            ending.words));
+    throw_usage("{} holds one frame as a picture, which has no duration; use .apng, or .png (corda still)",
+                ending.words);
 }
 
 void write_animation(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,

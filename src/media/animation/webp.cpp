@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "corda/core/text.hpp"
 #include "corda/media/animation/animation.hpp"
 
 namespace corda::media {
@@ -13,7 +14,7 @@ namespace {
 using Mux = std::unique_ptr<WebPMux, decltype(&WebPMuxDelete)>;
 
 [[noreturn]] void fail_webp(const std::string& what) {
-    throw Error(ExitCode::kEncoder, fmt::format("libwebp {}; use a smaller picture or .apng", what));
+    throw_error(ExitCode::kEncoder, "libwebp {}; use a smaller picture or .apng", what);
 }
 
 /// A picture encoded by libwebp, with the memory that libwebp frees.

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "corda/core/cancel.hpp"
+#include "corda/core/text.hpp"
 #include "corda/media/chunks/video_writer.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/read/video_comment.hpp"
@@ -124,13 +125,15 @@ Descriptor open_folder(const std::string& path) {
     const int failure = errno;
     std::error_code ignored;
     if (fs::is_symlink(path, ignored))
-        throw Error(ExitCode::kIo, fmt::format("'{}' is a symbolic link, which is not followed; put the "
-                                               "folder that it leads to in its place, or remove it",
-                                               path));
+        throw_error(ExitCode::kIo,
+                    "'{}' is a symbolic link, which is not followed; put the folder that it leads to in its "
+                    "place, or remove it",
+                    path);
     if (failure != ENOTDIR) fail_file("read", path, failure);
-    throw Error(ExitCode::kIo, fmt::format("'{}' is no folder, and the chunks of the unfinished video need "
-                                           "this name; move it away, or choose another name for the output",
-                                           path));
+    throw_error(ExitCode::kIo,
+                "'{}' is no folder, and the chunks of the unfinished video need this name; move it away, or "
+                "choose another name for the output",
+                path);
 }
 
 /// Locks a folder. False if its name leads to another one by now. Throws corda::Error (kIo) if another
@@ -149,15 +152,15 @@ bool lock_folder(const Descriptor& folder, const std::string& path, Use use) {
 void refuse_other_contents(const std::string& path, Use use) {
     const Contents found = contents_of(path);
     if (found.has_others && !found.has_manifest)
-        throw Error(ExitCode::kIo,
-                    fmt::format("'{}' holds other files, and the chunks of the unfinished video need this "
-                                "name; move it away, or choose another name for the output",
-                                path));
+        throw_error(ExitCode::kIo,
+                    "'{}' holds other files, and the chunks of the unfinished video need this name; move it "
+                    "away, or choose another name for the output",
+                    path);
     if (use == Use::kNew && !found.chunks.empty())
-        throw Error(ExitCode::kIo,
-                    fmt::format("'{}' holds an interrupted render; resume it (--resume), make it a video "
-                                "(corda recover), move it away, or start again with force (--force)",
-                                path));
+        throw_error(ExitCode::kIo,
+                    "'{}' holds an interrupted render; resume it (--resume), make it a video (corda "
+                    "recover), move it away, or start again with force (--force)",
+                    path);
 }
 
 /// Removes all files that Corda has named, the manifest last.
@@ -184,7 +187,7 @@ std::optional<Manifest> read_manifest(const std::string& folder) {
     std::error_code ignored;
     if (!fs::exists(path, ignored)) return std::nullopt;
     if (fs::symlink_status(path, ignored).type() != fs::file_type::regular)
-        throw Error(ExitCode::kMismatch, fmt::format("'{}' is no ordinary file; {}", path, kRemedy));
+        throw_error(ExitCode::kMismatch, "'{}' is no ordinary file; {}", path, kRemedy);
     try {
         const auto manifest = parse_untrusted_json(first_bytes(path, kMaxJsonBytes + 1)).get<Manifest>();
         const bool can_be = manifest.fps.is_rate() && manifest.first >= 0 && manifest.first < manifest.end &&
@@ -193,10 +196,10 @@ std::optional<Manifest> read_manifest(const std::string& folder) {
         if (can_be) return manifest;
         throw Error(ExitCode::kMismatch, "has values that cannot be");
     } catch (const Json::exception&) {
-        throw Error(ExitCode::kMismatch, fmt::format("'{}' lacks a value; {}", path, kRemedy));
+        throw_error(ExitCode::kMismatch, "'{}' lacks a value; {}", path, kRemedy);
     } catch (const Error& error) {
         if (error.code() != ExitCode::kMismatch) throw;
-        throw Error(ExitCode::kMismatch, fmt::format("'{}' {}; {}", path, error.what(), kRemedy));
+        throw_error(ExitCode::kMismatch, "'{}' {}; {}", path, error.what(), kRemedy);
     }
 }
 
@@ -230,7 +233,7 @@ ChunkFolder::ChunkFolder(std::string path, Use use, Manifest manifest)
     remove_leftovers(path_, is_unnamed);
     if (const auto found = read_manifest(path_)) {
         if (identity_of(*found) != identity_of(manifest_))
-            throw Error(ExitCode::kUsage, fmt::format("'{}' has chunks of another render", path_));
+            throw_usage("'{}' has chunks of another render", path_);
         return;
     }
     save_file(manifest_path(path_), Json(manifest_).dump(1) + "\n");

@@ -15,6 +15,7 @@
 #include "corda/core/cancel.hpp"
 #include "corda/core/image.hpp"
 #include "corda/core/output_file.hpp"
+#include "corda/core/text.hpp"
 #include "corda/media/animation/animation.hpp"
 #include "corda/media/bytes.hpp"
 #include "corda/media/chunks/track_output.hpp"
@@ -29,16 +30,14 @@ namespace corda::media {
 namespace {
 
 [[noreturn]] void fail_damaged(const ChunkFile& file, const std::string& reason) {
-    throw Error(
-        ExitCode::kMismatch,
-        fmt::format("'{}' is damaged: {}; remove it, and make it again (--resume)", file.path, reason));
+    throw_error(ExitCode::kMismatch, "'{}' is damaged: {}; remove it, and make it again (--resume)",
+                file.path, reason);
 }
 
 [[noreturn]] void fail_differing(const std::string& part, const std::string& first,
                                  const std::string& problem) {
-    throw Error(ExitCode::kMismatch,
-                fmt::format("'{}' cannot be joined to '{}': {}; render both with the same options", part,
-                            first, problem));
+    throw_error(ExitCode::kMismatch, "'{}' cannot be joined to '{}': {}; render both with the same options",
+                part, first, problem);
 }
 
 /// A chunk file, open for reading its packets.
@@ -170,9 +169,7 @@ void check_ending(const Ending& ending, AVCodecID codec, const std::string& path
     const std::string_view stream = avcodec_get_name(codec);
     for (const char* const name : ending.codecs)
         if (is_file && name != nullptr && find_codec(name)->stream == stream) return;
-    throw Error(
-        ExitCode::kUsage,
-        fmt::format("'{}' cannot be made of {}; give the ending that the render was for", path, stream));
+    throw_usage("'{}' cannot be made of {}; give the ending that the render was for", path, stream);
 }
 
 /// Verifies the parts, and refuses those that differ from the first in what the report says. Returns the
@@ -184,8 +181,7 @@ Rational check_parts(const std::vector<std::string>& parts, ChunkRun& run) {
     for (const std::string& part : parts) {
         const VerifyReport its = verify_in_child(part);
         if (!its.ok())
-            throw Error(ExitCode::kMismatch,
-                        fmt::format("'{}' fails its check: {}", part, its.problems.front()));
+            throw_error(ExitCode::kMismatch, "'{}' fails its check: {}", part, its.problems.front());
         fps = its.fps;
         const Traits traits{{{"size (--size)", fmt::format("{}x{}", its.width_px, its.height_px)},
                              {"rate (--fps)", fps.text()},
@@ -247,10 +243,9 @@ void join_chunks(const ChunkRun& run, const Manifest& manifest, const std::strin
     if (!report.ok()) {
         std::string problems;
         for (const std::string& line : report.problems) problems += "\n  - " + line;
-        throw Error(
-            ExitCode::kMismatch,
-            fmt::format("the video for '{}' failed its check, and its chunks stay in '{}':{}", path,
-                        std::filesystem::path(run.chunks.front().path).parent_path().string(), problems));
+        throw_error(ExitCode::kMismatch,
+                    "the video for '{}' failed its check, and its chunks stay in '{}':{}", path,
+                    std::filesystem::path(run.chunks.front().path).parent_path().string(), problems);
     }
     output.commit();
 }
@@ -297,14 +292,14 @@ Recovered recover(const std::string& folder, const std::string& path, const Outp
     check_path(folder);
     const auto manifest = read_manifest(folder);
     if (!manifest)
-        throw Error(ExitCode::kMismatch,
-                    fmt::format("'{}' has no manifest, so it is not of an interrupted render", folder));
+        throw_error(ExitCode::kMismatch, "'{}' has no manifest, so it is not of an interrupted render",
+                    folder);
     ChunkFolder parts(folder, ChunkFolder::Use::kContinue, *manifest);
     const ChunkRun run = parts.run();
     if (run.chunks.empty())
-        throw Error(ExitCode::kMismatch, fmt::format("'{}' holds no chunk to begin with: {}; render it again "
-                                                     "(--resume or --force)",
-                                                     folder, gap_text(run, *manifest)));
+        throw_error(ExitCode::kMismatch,
+                    "'{}' holds no chunk to begin with: {}; render it again (--resume or --force)", folder,
+                    gap_text(run, *manifest));
     work_in_child(folder, bytes_of(run.chunks), [&] { join_chunks(run, *manifest, path, options, {}); });
     const bool removes = run.left_out == 0 && !keeps_folder;
     if (removes) parts.remove();
@@ -314,10 +309,10 @@ Recovered recover(const std::string& folder, const std::string& path, const Outp
 ChunkRun join_videos(const std::vector<std::string>& parts, const std::string& path, const std::string& title,
                      const std::string& comment, const OutputOptions& options) {
     if (find_ending(path).kind != FileKind::kVideo)
-        throw Error(ExitCode::kUsage,
-                    fmt::format("'{}' is no video that can be joined; give a name that ends as the parts do "
-                                "(.mp4, .mov, .mkv, .webm)",
-                                path));
+        throw_usage(
+            "'{}' is no video that can be joined; give a name that ends as the parts do (.mp4, .mov, .mkv, "
+            ".webm)",
+            path);
     ChunkRun run;
     const Rational fps = check_parts(parts, run);
     nlohmann::json told = nlohmann::json::parse(comment);

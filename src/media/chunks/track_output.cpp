@@ -8,6 +8,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
 #include "corda/core/file.hpp"
+#include "corda/core/text.hpp"
 
 namespace corda::media {
 namespace {
@@ -107,10 +108,8 @@ TrackOutput::TrackOutput(const OutputFile& output, const char* container, const 
     check_libav(avformat_write_header(format_.get(), options.get()), kIo,
                 fmt::format("cannot write the header of '{}'", path_));
     if (const std::string name = options.left_over(); !name.empty()) {
-        throw Error(ExitCode::kEncoder,
-                    fmt::format("this libavformat has no option '{}' of {}; FFmpeg 5.1 or "
-                                "newer has it",
-                                name, container));
+        throw_error(ExitCode::kEncoder,
+                    "this libavformat has no option '{}' of {}; FFmpeg 5.1 or newer has it", name, container);
     }
 }
 

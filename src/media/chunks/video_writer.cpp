@@ -16,6 +16,7 @@
 #include "corda/core/file.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
+#include "corda/core/text.hpp"
 #include "corda/media/animation/animation.hpp"
 #include "corda/media/chunks/join.hpp"
 #include "corda/media/format/format.hpp"
@@ -120,8 +121,8 @@ class FolderSink : public VideoSink {
             const std::int64_t next = folder_.manifest().first_chunk() + std::ssize(run.chunks);
             if (number != next || !std::filesystem::exists(file.path, ignored)) {
                 run.gap = next;
-                throw Error(ExitCode::kMismatch, fmt::format("{} in '{}': --resume makes it again",
-                                                             gap_text(run, folder_.manifest()), place()));
+                throw_error(ExitCode::kMismatch, "{} in '{}': --resume makes it again",
+                            gap_text(run, folder_.manifest()), place());
             }
             run.chunks.push_back(file);
         }
@@ -146,7 +147,7 @@ class FolderSink : public VideoSink {
                     ? fmt::format("finished chunks are in '{}'; --resume{} continues it", folder_.path(),
                                   is_taken ? " --force" : "")
                     : fmt::format("'{}' was removed meanwhile, and its frames with it", folder_.path());
-            throw Error(error.code(), fmt::format("{}; {}", error.what(), kept));
+            throw_error(error.code(), "{}; {}", error.what(), kept);
         }
     }
 
@@ -246,8 +247,7 @@ std::unique_ptr<VideoSink> make_sink(const CheckedVideo& output, Manifest manife
 Manifest manifest_of(const CheckedVideo& output, const VideoMetadata& metadata) {
     auto comment = nlohmann::json::parse(metadata.comment_json, nullptr, false);
     if (!comment.is_object())
-        throw Error(ExitCode::kUsage,
-                    fmt::format("the video comment is not a JSON object: {}", metadata.comment_json));
+        throw_usage("the video comment is not a JSON object: {}", metadata.comment_json);
     comment["fps"] = output.def.fps.rational().text();
     if (output.format.codec->crf) comment["crf"] = output.format.crf_of(output.def.encoder);
     return {.made_from = metadata.made_from,
@@ -299,10 +299,9 @@ CheckedVideo check_video_output(CheckedVideo video, const std::string& input, bo
         check_output(video.path, input, video.force);
         ChunkFolder::check(parts_path(video.path), video.use());
     } else if (video.resume || video.shard) {
-        throw Error(ExitCode::kUsage,
-                    fmt::format("{} has no chunk files, which {} needs; render the frames that are missing "
-                                "(--frames FIRST:END)",
-                                video.path, video.resume ? "--resume" : "--shard"));
+        throw_usage(
+            "{} has no chunk files, which {} needs; render the frames that are missing (--frames FIRST:END)",
+            video.path, video.resume ? "--resume" : "--shard");
     } else if (kind == FileKind::kPictures) {
         check_pictures(video.path, input, video.force, video.first, known_end);
     }
@@ -328,9 +327,8 @@ VideoWriter::~VideoWriter() = default;
 
 void VideoWriter::write(const Image& frame, const Damage& damage) {
     if (frame.width() != output_.def.width_px || frame.height() != output_.def.height_px) {
-        throw Error(ExitCode::kInternal,
-                    fmt::format("a frame of {}x{} was written to a video of {}x{}", frame.width(),
-                                frame.height(), output_.def.width_px, output_.def.height_px));
+        throw_error(ExitCode::kInternal, "a frame of {}x{} was written to a video of {}x{}", frame.width(),
+                    frame.height(), output_.def.width_px, output_.def.height_px);
     }
     if (!encoder_) encoder_ = std::make_unique<ChunkEncoder>(chunk_encoder(next_));
     const bool ends_chunk = next_ + encoder_->frames() + 1 == manifest_.end_of(next_ / manifest_.per_chunk);
@@ -379,9 +377,7 @@ std::int64_t VideoWriter::frames() const {
 void VideoWriter::finish(VerifyDepth depth, const OnProgress& on_progress) {
     end_chunk();
     if (frames() == 0 && !output_.shard)
-        throw Error(
-            ExitCode::kUsage,
-            fmt::format("'{}' would have no frame; ask for a duration of at least one frame", output_.path));
+        throw_usage("'{}' would have no frame; ask for a duration of at least one frame", output_.path);
     const bool takes_all = depth == VerifyDepth::kKeyFrames && output_.format.codec->verifies_all;
     sink_->finish({.depth = takes_all ? VerifyDepth::kAllFrames : depth,
                    .jobs = output_.def.encoder.jobs,

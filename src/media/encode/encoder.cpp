@@ -9,6 +9,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
+#include "corda/core/text.hpp"
 #include "corda/media/chunks/chunk.hpp"
 #include "corda/media/encode/pixels.hpp"
 #include "corda/media/png/png.hpp"
@@ -46,9 +47,8 @@ void open(AVCodecContext& context, const VideoDef& def, const EncoderOptions& se
                             def.fps.rational().text(), text),
                 is_hardware ? "try another codec: this one needs hardware and its driver"
                             : "try another preset, size or codec");
-    if (const std::string name = options.left_over(); !name.empty()) {
-        throw Error(ExitCode::kEncoder, fmt::format("{} does not know the option '{}'", encoder, name));
-    }
+    if (const std::string name = options.left_over(); !name.empty())
+        throw_error(ExitCode::kEncoder, "{} does not know the option '{}'", encoder, name);
 }
 
 Frame frame_for(const AVCodecContext& context) {
@@ -71,9 +71,8 @@ LibavEncoder::LibavEncoder(const Format& format, const VideoDef& def, Convert co
     const LogCapture log;
     const AVCodec* const codec = avcodec_find_encoder_by_name(format.codec->name);
     if (codec == nullptr)
-        throw Error(
-            ExitCode::kEncoder,
-            fmt::format("this libavcodec was built without {}; see `corda doctor`", format.codec->name));
+        throw_error(ExitCode::kEncoder, "this libavcodec was built without {}; see `corda doctor`",
+                    format.codec->name);
     context_ = check_allocated(CodecContext(avcodec_alloc_context3(codec)), "an encoder");
     configure(*context_, format, def);
     open(*context_, def,

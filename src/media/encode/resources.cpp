@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "corda/core/basics.hpp"
 #include "corda/core/machine.hpp"
+#include "corda/core/text.hpp"
 
 namespace corda::media {
 namespace {
@@ -67,12 +67,11 @@ void check_disk_space(const Format& format, const std::string& path, const Video
     const DiskNeed need = disk_need(format, def, frames);
     const auto free = free_disk_bytes(path);
     if (!free || need.least <= *free + there) return;
-    throw Error(
-        ExitCode::kIo,
-        fmt::format("'{}' does not fit on its disk: {} frames of {}x{} as {} take {:.3g} MB at least "
-                    "while it is made, and {:.3g} are free; free some space, or write to another disk",
-                    path, frames, def.width_px, def.height_px, format.words(),
-                    static_cast<double>(need.least) / kMegabyte, static_cast<double>(*free) / kMegabyte));
+    throw_error(ExitCode::kIo,
+                "'{}' does not fit on its disk: {} frames of {}x{} as {} take {:.3g} MB at least while it is "
+                "made, and {:.3g} are free; free some space, or write to another disk",
+                path, frames, def.width_px, def.height_px, format.words(),
+                static_cast<double>(need.least) / kMegabyte, static_cast<double>(*free) / kMegabyte);
 }
 
 std::string disk_warning(const Format& format, const std::string& path, const VideoDef& def,

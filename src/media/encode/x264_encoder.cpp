@@ -1,3 +1,4 @@
+#include "corda/core/text.hpp"
 #include "corda/media/encode/encoder.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +20,6 @@ extern "C" {
 #include <x264.h>
 }
 
-#include "corda/core/basics.hpp"
 #include "corda/media/chunks/chunk.hpp"
 #include "corda/media/encode/pixels.hpp"
 #include "corda/media/encode/yuv420.hpp"
@@ -61,7 +61,7 @@ x264_param_t make_params(const Format& format, const VideoDef& def) {
     x264_param_t params;
     const std::string preset = format.preset_of(def.encoder);
     if (x264_param_default_preset(&params, preset.c_str(), nullptr) < 0)
-        throw Error(ExitCode::kEncoder, fmt::format("libx264 does not know the preset '{}'", preset));
+        throw_error(ExitCode::kEncoder, "libx264 does not know the preset '{}'", preset);
     const Rational fps = def.fps.rational();
     const bool is_420 = std::string_view(format.pixel_format) == "yuv420p";
     params.pf_log = &on_x264_log;
@@ -93,7 +93,7 @@ x264_param_t make_params(const Format& format, const VideoDef& def) {
     params.analyse.b_mb_info = 1;
     // Of 4:2:0 High (the preset ultrafast gives Constrained Baseline), which browsers and QuickTime play.
     if (x264_param_apply_profile(&params, is_420 ? "high" : "high444") < 0)
-        throw Error(ExitCode::kEncoder, fmt::format("libx264 refuses its profile ({})", captured_log()));
+        throw_error(ExitCode::kEncoder, "libx264 refuses its profile ({})", captured_log());
     return params;
 }
 
@@ -120,12 +120,11 @@ class X264Encoder : public Encoder {
         x264_.reset(x264_encoder_open(&params));
         if (!x264_) {
             const std::string reason = log.text().empty() ? "" : fmt::format(" ({})", log.text());
-            throw Error(
-                ExitCode::kEncoder,
-                fmt::format("libx264 does not open for {}x{} at {} fps, preset {}, crf {}{}; try another "
-                            "preset, size or codec; see `corda doctor`",
-                            def.width_px, def.height_px, def.fps.rational().text(),
-                            format.preset_of(def.encoder), format.crf_of(def.encoder), reason));
+            throw_error(ExitCode::kEncoder,
+                        "libx264 does not open for {}x{} at {} fps, preset {}, crf {}{}; try another preset, "
+                        "size or codec; see `corda doctor`",
+                        def.width_px, def.height_px, def.fps.rational().text(), format.preset_of(def.encoder),
+                        format.crf_of(def.encoder), reason);
         }
         csp_ = params.i_csp;
         tolerance_ = patch_tolerance(format.crf_of(def.encoder), csp_ == X264_CSP_I444);
@@ -284,7 +283,7 @@ class X264Encoder : public Encoder {
         const int bytes = x264_encoder_encode(x264_.get(), &nals, &count, picture, &shown);
         if (bytes < 0) {
             const std::string reason = log.text().empty() ? "" : " (" + log.text() + ")";
-            throw Error(ExitCode::kEncoder, fmt::format("libx264 failed near frame {}{}", frames_, reason));
+            throw_error(ExitCode::kEncoder, "libx264 failed near frame {}{}", frames_, reason);
         }
         if (bytes == 0) return;
         if (shown.i_pts == expected_.frame) compare(shown.img);
@@ -305,11 +304,10 @@ class X264Encoder : public Encoder {
         for (const ColorPatch& patch : expected_.patches) {
             const std::array<double, 3> rgb = mean_rgb(shown, patch);
             if (patch_error(patch, rgb) <= tolerance_) continue;
-            throw Error(
-                ExitCode::kEncoder,
-                fmt::format("libx264 shows R'G'B' {:.1f} {:.1f} {:.1f} at ({}, {}) where {} was drawn; "
-                            "try another preset or crf",
-                            rgb[0], rgb[1], rgb[2], patch.x, patch.y, fmt::join(patch.rgb, " ")));
+            throw_error(ExitCode::kEncoder,
+                        "libx264 shows R'G'B' {:.1f} {:.1f} {:.1f} at ({}, {}) where {} was drawn; try "
+                        "another preset or crf",
+                        rgb[0], rgb[1], rgb[2], patch.x, patch.y, fmt::join(patch.rgb, " "));
         }
     }
 

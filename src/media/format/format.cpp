@@ -7,7 +7,6 @@
 #include <array>
 #include <filesystem>
 
-#include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
@@ -34,11 +33,6 @@ constexpr std::array kEndings{
     Ending{"%04d.png", "PNG pictures", FileKind::kPictures, "", {"png"}},
     Ending{"-", "YUV4MPEG2", FileKind::kStream, "", {"rawvideo"}},
 };
-
-template <typename... Args>
-[[noreturn]] void fail_usage(fmt::format_string<Args...> text, Args&&... args) {
-    throw Error(ExitCode::kUsage, fmt::format(text, std::forward<Args>(args)...));
-}
 
 std::vector<std::string_view> names_of(const Ending& ending) {
     std::vector<std::string_view> names;
@@ -129,11 +123,10 @@ const Codec& choose_codec(const Ending& ending, std::string_view path, const Enc
             if (is_available(codec) && !codec.is_hardware) return codec;
             is_fallback = true;
         }
-        throw Error(
-            ExitCode::kEncoder,
-            fmt::format("'{}': none of the encoders {} is here; install a libavcodec that has them (Debian: "
-                        "apt-get install {}), and see `corda doctor`",
-                        path, fmt::join(names, ", "), libavcodec_package()));
+        throw_error(ExitCode::kEncoder,
+                    "'{}': none of the encoders {} is here; install a libavcodec that has them (Debian: "
+                    "apt-get install {}), and see `corda doctor`",
+                    path, fmt::join(names, ", "), libavcodec_package());
     }
     const Codec* chosen = nullptr;
     for (const std::string_view name : names) {
@@ -144,7 +137,7 @@ const Codec& choose_codec(const Ending& ending, std::string_view path, const Enc
     }
     if (chosen != nullptr && is_available(*chosen)) return *chosen;
     if (chosen != nullptr) throw Error(ExitCode::kEncoder, missing_text(*chosen));
-    fail_usage("'{}' cannot hold the codec '{}'; use {}", path, def.codec, fmt::join(names, ", "));
+    throw_usage("'{}' cannot hold the codec '{}'; use {}", path, def.codec, fmt::join(names, ", "));
 }
 
 /// The first pixel format of the codec that is of the choice and, if that is possible, has alpha as wanted.
@@ -157,8 +150,8 @@ const char* choose_pixels(const Format& format, const VideoDef& def, bool is_tra
     }
     if (chosen != nullptr) return chosen;
     const auto words = pixel_words(*format.codec);
-    fail_usage("video.pix {} is not what {} is made of; use {}, another codec, or leave it out",
-               word_of(def.encoder.pix), format.words(), fmt::join(words, " or "));
+    throw_usage("video.pix {} is not what {} is made of; use {}, another codec, or leave it out",
+                word_of(def.encoder.pix), format.words(), fmt::join(words, " or "));
 }
 
 /// The even numbers next to an odd side: "1080 or 1082".
@@ -173,23 +166,23 @@ void check_size_for(const Format& format, const VideoDef& def) {
     const Ending& ending = *format.ending;
     const bool is_odd = def.width_px % 2 != 0 || def.height_px % 2 != 0;
     if (is_odd && descriptor_of(format.pixel_format).log2_chroma_w == 1) {
-        fail_usage(
+        throw_usage(
             "video size {}x{} is odd, and {} 4:2:0 needs even sides; use a width of {} and a height of {} "
             "(render --pad takes the larger ones)",
             def.width_px, def.height_px, codec.standard, even_sides(def.width_px), even_sides(def.height_px));
     }
     if (std::min(def.width_px, def.height_px) < codec.min_side_px) {
-        fail_usage("video size {}x{} is too small for {}; use sides of {} or more, or another {}",
-                   def.width_px, def.height_px, codec.name, codec.min_side_px,
-                   names_of(ending).size() > 1 ? "codec" : "format");
+        throw_usage("video size {}x{} is too small for {}; use sides of {} or more, or another {}",
+                    def.width_px, def.height_px, codec.name, codec.min_side_px,
+                    names_of(ending).size() > 1 ? "codec" : "format");
     }
     if (def.height_px > codec.max_height_px) {
-        fail_usage("video size {}x{} is too tall for {}; use a height of {} or less, or another codec",
-                   def.width_px, def.height_px, codec.name, codec.max_height_px);
+        throw_usage("video size {}x{} is too tall for {}; use a height of {} or less, or another codec",
+                    def.width_px, def.height_px, codec.name, codec.max_height_px);
     }
     if (std::max(def.width_px, def.height_px) > ending.max_side_px) {
-        fail_usage("video size {}x{} is too large for {}; use sides of {} or less, or another format",
-                   def.width_px, def.height_px, ending.words, ending.max_side_px);
+        throw_usage("video size {}x{} is too large for {}; use sides of {} or less, or another format",
+                    def.width_px, def.height_px, ending.words, ending.max_side_px);
     }
 }
 
@@ -198,21 +191,21 @@ void check_preset(const Format& format, const EncoderDef& def) {
     const auto& presets = codec.presets;
     if (def.preset.empty() || std::find(presets.begin(), presets.end(), def.preset) != presets.end()) return;
     if (presets.empty())
-        fail_usage("preset '{}': {} has no presets; leave it out", def.preset, format.words());
-    fail_usage("preset '{}' is unknown to {}; use one of {}", def.preset, codec.name,
-               fmt::join(presets, ", "));
+        throw_usage("preset '{}': {} has no presets; leave it out", def.preset, format.words());
+    throw_usage("preset '{}' is unknown to {}; use one of {}", def.preset, codec.name,
+                fmt::join(presets, ", "));
 }
 
 void check_crf(const Format& format, const EncoderDef& def) {
     const Codec& codec = *format.codec;
     if (!def.crf) return;
-    if (!codec.crf) fail_usage("crf {}: {} has no rate factor; leave it out", *def.crf, format.words());
+    if (!codec.crf) throw_usage("crf {}: {} has no rate factor; leave it out", *def.crf, format.words());
     if (*def.crf >= codec.crf->first && *def.crf <= codec.crf->second) return;
-    fail_usage("crf {} is out of range; use {} to {} for {}{}", *def.crf, codec.crf->first, codec.crf->second,
-               codec.name,
-               std::string_view(codec.name) == "libx264" && *def.crf == 0
-                   ? " (0 is lossless 4:4:4, which browsers refuse; .mkv is lossless)"
-                   : "");
+    throw_usage("crf {} is out of range; use {} to {} for {}{}", *def.crf, codec.crf->first,
+                codec.crf->second, codec.name,
+                std::string_view(codec.name) == "libx264" && *def.crf == 0
+                    ? " (0 is lossless 4:4:4, which browsers refuse; .mkv is lossless)"
+                    : "");
 }
 
 /// Of what counts milliseconds.
@@ -224,7 +217,7 @@ void check_gif_rate(Rational fps) {
     const bool is_fast = fps.num > 50 * fps.den;
     if (!is_fast && 100 * fps.den <= kLongestPause * fps.num) return;
     const std::string possible = is_fast ? "50" : Rational::reduced(100, kLongestPause).text();
-    fail_usage(
+    throw_usage(
         "a GIF cannot have {} frames per second: its pauses are 2 to {} hundredths of a second; use {} "
         "(--fps {}){}",
         fps.text(), kLongestPause, possible, possible,
@@ -236,13 +229,13 @@ void check_rate_for(const Format& format, const VideoDef& def) {
     const std::string_view muxer = format.ending->muxer;
     if (muxer == "gif") check_gif_rate(fps);
     if (muxer == "apng" && (fps.num > 65535 || fps.den > 65535))
-        fail_usage(
+        throw_usage(
             "an APNG cannot have {} frames per second: it counts up to 65535; use a rate such as 30000/1001",
             fps.text());
     const bool counts_ms = muxer == "matroska" || muxer == "webm" || muxer == "webp";
     if (counts_ms && fps.value() > kMaxMsRate)
-        fail_usage("{} cannot have {} frames per second: it counts milliseconds; use {} or less, or .mp4",
-                   format.ending->words, fps.text(), kMaxMsRate);
+        throw_usage("{} cannot have {} frames per second: it counts milliseconds; use {} or less, or .mp4",
+                    format.ending->words, fps.text(), kMaxMsRate);
 }
 
 }  // namespace
@@ -342,11 +335,11 @@ const Ending& find_ending(std::string_view path) {
     if (const auto row = find(ending); row != endings().end()) return *row;
     const std::string usual = lower(ending);
     if (usual == ".png" || find(usual) != endings().end())
-        fail_usage("'{}': the ending of the name tells the format; write it in lower case: {}", path, usual);
+        throw_usage("'{}': the ending of the name tells the format; write it in lower case: {}", path, usual);
     std::vector<std::string_view> known;
     for (const Ending& candidate : endings()) known.emplace_back(candidate.text);
-    fail_usage("'{}': the ending of the name tells the format, and this one is not known; use {}", path,
-               fmt::join(known, ", "));
+    throw_usage("'{}': the ending of the name tells the format, and this one is not known; use {}", path,
+                fmt::join(known, ", "));
 }
 
 Format find_format(std::string_view path, const VideoDef& def, bool is_transparent) {
@@ -357,7 +350,7 @@ Format find_format(std::string_view path, const VideoDef& def, bool is_transpare
     format.pixel_format = choose_pixels(format, def, is_transparent);
     format.has_alpha = has_alpha_plane(format.pixel_format);
     if (format.ending->kind == FileKind::kAnimation && !def.encoder.codec.empty())
-        fail_usage("'{}' cannot hold the codec '{}'; leave it out", path, def.encoder.codec);
+        throw_usage("'{}' cannot hold the codec '{}'; leave it out", path, def.encoder.codec);
     check_size_for(format, def);
     check_preset(format, def.encoder);
     check_crf(format, def.encoder);
@@ -367,24 +360,24 @@ Format find_format(std::string_view path, const VideoDef& def, bool is_transpare
 
 void check_video_def(const VideoDef& def) {
     if (!is_picture_size(def.width_px, def.height_px)) {
-        fail_usage(
+        throw_usage(
             "video size {}x{} is out of range: each side is 1 to {}, and a frame has at most {} pixels",
             def.width_px, def.height_px, kMaxSidePx, kMaxPicturePx);
     }
     if (!def.fps.rational().is_rate()) {
-        fail_usage("frame rate {} is out of range; use a positive rate such as 60 or 30000/1001",
-                   def.fps.rational().text());
+        throw_usage("frame rate {} is out of range; use a positive rate such as 60 or 30000/1001",
+                    def.fps.rational().text());
     }
     if (def.encoder.threads < 1 || def.encoder.threads > EncoderDef::kMaxThreads) {
-        fail_usage("{} encoder threads are out of range; use 1 to {}", def.encoder.threads,
-                   EncoderDef::kMaxThreads);
+        throw_usage("{} encoder threads are out of range; use 1 to {}", def.encoder.threads,
+                    EncoderDef::kMaxThreads);
     }
     if (def.encoder.jobs < 0 || def.encoder.jobs > EncoderDef::kMaxThreads) {
-        fail_usage("{} encoder jobs are out of range; use 0 (one per core) to {}", def.encoder.jobs,
-                   EncoderDef::kMaxThreads);
+        throw_usage("{} encoder jobs are out of range; use 0 (one per core) to {}", def.encoder.jobs,
+                    EncoderDef::kMaxThreads);
     }
     if (!def.encoder.codec.empty() && find_codec(def.encoder.codec) == nullptr)
-        fail_usage("unknown codec '{}'; use {}", def.encoder.codec, fmt::join(codec_names(), ", "));
+        throw_usage("unknown codec '{}'; use {}", def.encoder.codec, fmt::join(codec_names(), ", "));
 }
 
 std::string libavcodec_package() {

@@ -1,11 +1,10 @@
+#include "corda/core/text.hpp"
 #include "corda/media/format/format.hpp"
 
 #include <fmt/format.h>
 
 #include <optional>
 #include <utility>
-
-#include "corda/core/basics.hpp"
 
 namespace corda::media {
 namespace {
@@ -57,11 +56,10 @@ std::pair<std::string_view, std::string_view> split(std::string_view pattern) {
 
 void check_picture_names(std::string_view pattern) {
     if (names_of(split(pattern).second)) return;
-    throw Error(ExitCode::kUsage,
-                fmt::format("'{}': a video as pictures needs the number of each in its name, once, as %d or "
-                            "%04d, and %% for a per cent sign; use e.g. frames/%04d.png (`corda still` draws "
-                            "one picture)",
-                            pattern));
+    throw_usage(
+        "'{}': a video as pictures needs the number of each in its name, once, as %d or %04d, and %% for a "
+        "per cent sign; use e.g. frames/%04d.png (`corda still` draws one picture)",
+        pattern);
 }
 
 std::string picture_name(std::string_view pattern, std::int64_t frame) {

@@ -14,6 +14,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
 #include "corda/core/file.hpp"
+#include "corda/core/text.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/media/format/file_kind.hpp"
 
@@ -143,9 +144,8 @@ Image rounded(const DeepImage& deep) {
 }
 
 [[noreturn]] void fail_png(const std::string& path, std::string_view reason) {
-    throw Error(
-        ExitCode::kIo,
-        fmt::format("cannot read PNG '{}': {}; write the file again, or give another one", path, reason));
+    throw_error(ExitCode::kIo, "cannot read PNG '{}': {}; write the file again, or give another one", path,
+                reason);
 }
 
 /// Message for a failure of libpng.
@@ -167,8 +167,7 @@ void open_job(ReadJob& job, const std::string& path) {
         head.resize(count + std::fread(&head[count], 1, head.size() - count, job.file));
         const media::ForeignKind* const kind = media::foreign_kind(head);
         if (kind == nullptr) fail_png(path, "it does not begin like a PNG");
-        throw Error(ExitCode::kIo,
-                    fmt::format("cannot read PNG '{}': it is {}; {}", path, kind->words, kind->remedy));
+        throw_error(ExitCode::kIo, "cannot read PNG '{}': it is {}; {}", path, kind->words, kind->remedy);
     }
     job.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, on_read_error, on_read_warning);
     if (job.png != nullptr) job.info = png_create_info_struct(job.png);
@@ -182,10 +181,10 @@ void check_png_size(const ReadJob& job, const std::string& path) {
     const png_uint_32 width = png_get_image_width(job.png, job.info);
     const png_uint_32 height = png_get_image_height(job.png, job.info);
     if (!is_picture_size(width, height)) {
-        throw Error(ExitCode::kIo,
-                    fmt::format("cannot read PNG '{}': it has {} x {} pixels, and at most {} per side and {} "
-                                "in all are read; give a smaller picture",
-                                path, width, height, kMaxSidePx, kMaxPicturePx));
+        throw_error(ExitCode::kIo,
+                    "cannot read PNG '{}': it has {} x {} pixels, and at most {} per side and {} in all are "
+                    "read; give a smaller picture",
+                    path, width, height, kMaxSidePx, kMaxPicturePx);
     }
     struct stat status {};
     const bool known_size = ::fstat(::fileno(job.file), &status) == 0 && S_ISREG(status.st_mode);

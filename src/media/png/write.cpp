@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 #include <png.h>
 
 #include <cmath>
@@ -125,9 +124,8 @@ std::vector<png_text> libpng_texts(const PngInfo& info, std::vector<std::string>
     std::vector<png_text> texts;
     for (const auto& [keyword, bytes] : info.text) {
         if (keyword.empty() || keyword.size() > kMaxKeyword) {
-            throw Error(ExitCode::kUsage,
-                        fmt::format("PNG text keyword '{}' has {} characters; it must have 1 to {}", keyword,
-                                    keyword.size(), kMaxKeyword));
+            throw_usage("PNG text keyword '{}' has {} characters; it must have 1 to {}", keyword,
+                        keyword.size(), kMaxKeyword);
         }
         const std::string text = utf8(bytes);
         const auto latin1 = to_latin1(text);
@@ -163,18 +161,14 @@ void encode(const std::string& name, const Image& image, bool has_alpha, const P
     const bool written = job.info != nullptr && write_picture(job, image, !has_alpha, pixels_per_metre,
                                                               texts.data(), static_cast<int>(texts.size()));
     if (job.write_error) std::rethrow_exception(job.write_error);
-    if (!written) {
-        throw Error(ExitCode::kIo, fmt::format("cannot write PNG '{}': libpng says: {}", name, job.message));
-    }
+    if (!written) throw_error(ExitCode::kIo, "cannot write PNG '{}': libpng says: {}", name, job.message);
 }
 
 }  // namespace
 
 void write_png(const std::string& path, const Image& image, const PngInfo& info,
                const OutputOptions& options) {
-    if (image.width() < 1 || image.height() < 1) {
-        throw Error(ExitCode::kUsage, fmt::format("cannot write an empty picture to '{}'", path));
-    }
+    if (image.width() < 1 || image.height() < 1) throw_usage("cannot write an empty picture to '{}'", path);
     std::vector<std::string> storage;
     static_cast<void>(libpng_texts(info, storage));  // a wrong text is refused before a file is made
     OutputFile file(path, options);

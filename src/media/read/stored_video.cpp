@@ -5,9 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include <fmt/format.h>
-
-#include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 #include "corda/media/encode/yuv420.hpp"
 #include "corda/media/format/file_kind.hpp"
 #include "corda/media/libav_handles.hpp"
@@ -59,12 +57,11 @@ struct StoredVideo::Impl {
     explicit Impl(const std::string& its_path) : path(its_path) {
         const std::string kind = file_kind(path);
         if (is_truncated(path, kind) || (kind == "mov" && !read_mp4_boxes(path).whole))
-            throw Error(ExitCode::kIo,
-                        fmt::format("'{}' breaks off before its end; copy or render it again", path));
+            throw_error(ExitCode::kIo, "'{}' breaks off before its end; copy or render it again", path);
         if (kind == "webp") {
             webp.emplace(path);
             if (!webp->is_open())
-                throw Error(ExitCode::kIo, fmt::format("libwebp cannot open '{}' as an animated WebP", path));
+                throw_error(ExitCode::kIo, "libwebp cannot open '{}' as an animated WebP", path);
             if (const auto told = rate_of_ends(webp->told_ends_ms())) rate = *told;
             return;
         }
@@ -82,11 +79,10 @@ struct StoredVideo::Impl {
         if (!decoder->read()) return false;
         const AVFrame& frame = decoder->frame();
         if (!copy_samples(frame, picture))
-            throw Error(
-                ExitCode::kIo,
-                fmt::format("{}: is {} of {}x{}; only grey, R'G'B' or Y'CbCr of up to 16 bits is read", path,
-                            av_get_pix_fmt_name(static_cast<AVPixelFormat>(frame.format)), frame.width,
-                            frame.height));
+            throw_error(ExitCode::kIo,
+                        "{}: is {} of {}x{}; only grey, R'G'B' or Y'CbCr of up to 16 bits is read", path,
+                        av_get_pix_fmt_name(static_cast<AVPixelFormat>(frame.format)), frame.width,
+                        frame.height);
         const bool has_time = frame.best_effort_timestamp != AV_NOPTS_VALUE;
         picture.time_s =
             has_time ? static_cast<double>(frame.best_effort_timestamp) * av_q2d(decoder->stream().time_base)
@@ -99,7 +95,7 @@ struct StoredVideo::Impl {
     bool decode_webp(StoredPicture& picture) {
         if (!webp->has_next()) return false;
         const std::int64_t start_ms = webp->read_ends_ms().empty() ? 0 : webp->read_ends_ms().back();
-        if (!webp->read(shown)) throw Error(ExitCode::kIo, fmt::format("{}: decoding failed", path));
+        if (!webp->read(shown)) throw_error(ExitCode::kIo, "{}: decoding failed", path);
         picture = StoredPicture{};
         picture.width_px = shown.width();
         picture.height_px = shown.height();

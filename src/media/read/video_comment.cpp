@@ -5,8 +5,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "corda/core/basics.hpp"
 #include "corda/core/child_process.hpp"
+#include "corda/core/text.hpp"
 #include "corda/media/read/decoder.hpp"
 
 void corda::to_json(nlohmann::json& json, const Rational& value) {
@@ -135,7 +135,7 @@ namespace {
 constexpr ChildLimits kCommentLimits{std::uint64_t{4} << 30, 20, 60.0};
 [[noreturn]] void fail_reading(const std::string& path, ExitCode code, const std::string& problem,
                                std::string_view remedy) {
-    throw Error(code, fmt::format("cannot read '{}': {}; {}", path, problem, remedy));
+    throw_error(code, "cannot read '{}': {}; {}", path, problem, remedy);
 }
 
 std::string read_comment(const std::string& path, std::string_view remedy) {

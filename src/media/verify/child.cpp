@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
 #include "corda/core/child_process.hpp"
 #include "corda/core/machine.hpp"
+#include "corda/core/text.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/read/video_comment.hpp"
 #include "corda/media/verify/verify.hpp"
@@ -54,12 +54,10 @@ bool has_little_memory() {
 /// the reason.
 void throw_if_memory_may_lack(const std::string& path, const ChildEnd& end) {
     if (!has_little_memory() || end.outcome != ChildEnd::Outcome::kCrashed) return;
-    throw Error(
-        ExitCode::kTemporary,
-        fmt::format(
-            "reading '{}' {}, perhaps because the system allows little memory (ulimit -v, ulimit -d): raise "
-            "the limit; if that changes nothing, the file is damaged",
-            path, end.text));
+    throw_error(ExitCode::kTemporary,
+                "reading '{}' {}, perhaps because the system allows little memory (ulimit -v, ulimit -d): "
+                "raise the limit; if that changes nothing, the file is damaged",
+                path, end.text);
 }
 
 /// The same for problems that were found: without memory libavformat loses packets, and libavcodec frames,
@@ -71,11 +69,10 @@ void throw_if_memory_may_lack(const std::string& path, const VerifyReport& repor
                                                                  static_cast<std::uint64_t>(report.height_px);
     const auto is_less = [&](std::optional<std::uint64_t> left) { return left && *left < needed; };
     if (report.problems.empty() || !(is_less(address_space_left()) || is_less(data_left()))) return;
-    throw Error(
-        ExitCode::kTemporary,
-        fmt::format("'{}' cannot be judged in the memory that the system allows (ulimit -v, ulimit -d): "
-                    "raise the limit (found: {})",
-                    path, report.problems.front()));
+    throw_error(ExitCode::kTemporary,
+                "'{}' cannot be judged in the memory that the system allows (ulimit -v, ulimit -d): raise "
+                "the limit (found: {})",
+                path, report.problems.front());
 }
 
 /// The report as CBOR, because the words may quote any bytes of the file.
@@ -130,8 +127,8 @@ void work_in_child(const std::string& path, std::uint64_t bytes, const std::func
     if (!end) return work();
     if (end->finished()) return;
     throw_if_memory_may_lack(path, *end);
-    throw Error(ExitCode::kMismatch,
-                fmt::format("'{}' is damaged: reading it {}; render it again (--force)", path, end->text));
+    throw_error(ExitCode::kMismatch, "'{}' is damaged: reading it {}; render it again (--force)", path,
+                end->text);
 }
 
 }  // namespace corda::media
