@@ -55,11 +55,9 @@ class Console {
 
 /// Progress of a count of equal pieces of work: a bar with the time left on a terminal, otherwise a line
 /// after a second and then every 10 %, but not more often than every two seconds.
-class Progress {
+class Progress : NonCopyable {
   public:
     Progress(const Console& console, std::string_view what, std::int64_t total);
-    Progress(const Progress&) = delete;
-    Progress& operator=(const Progress&) = delete;
     /// Clears the bar.
     ~Progress();
 

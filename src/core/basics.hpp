@@ -45,13 +45,21 @@ class Error : public std::runtime_error {
     ExitCode code_;
 };
 
+/// Base of classes that are neither copied nor moved.
+class NonCopyable {
+  public:
+    NonCopyable() = default;
+    NonCopyable(const NonCopyable&) = delete;
+    NonCopyable& operator=(const NonCopyable&) = delete;
+};
+
 /// Progress of a piece of work: `done` of `total` equal parts. Returning false stops the work cleanly.
 /// May be empty.
 using OnProgress = std::function<bool(std::int64_t done, std::int64_t total)>;
 
 /// Cancellation of long work on one thread. While a scope lives, check_cancelled() calls its callback, which
 /// returns false to end the work. Scopes nest; a thread that the work starts has none.
-class [[nodiscard]] CancelScope {
+class [[nodiscard]] CancelScope : NonCopyable {
   public:
     enum class Outer { kAsked, kIgnored };
 
@@ -67,8 +75,6 @@ class [[nodiscard]] CancelScope {
                           return true;
                       }),
                       outer) {}
-    CancelScope(const CancelScope&) = delete;
-    CancelScope& operator=(const CancelScope&) = delete;
     ~CancelScope();
 
   private:

@@ -14,11 +14,9 @@ void require(bool goes_on) {
 }
 
 /// While a callback runs, no scope around it is asked.
-class Callback {
+class Callback : NonCopyable {
   public:
     Callback() { ++depth; }
-    Callback(const Callback&) = delete;
-    Callback& operator=(const Callback&) = delete;
     ~Callback() {
         --depth;
         innermost = asked_;

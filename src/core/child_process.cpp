@@ -33,11 +33,9 @@ constexpr char kError = '-';
 constexpr char kNoMemory = '!';
 
 /// Kills what still runs when it goes out of scope.
-class Child {
+class Child : NonCopyable {
   public:
     explicit Child(pid_t pid) : pid_(pid) {}
-    Child(const Child&) = delete;
-    Child& operator=(const Child&) = delete;
     ~Child() {
         if (pid_ != 0) kill();
     }

@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+#include "corda/core/basics.hpp"
+
 #if defined(__x86_64__)
 #include <xmmintrin.h>
 /// Compiles a function for AVX2 only; the caller asks the CPU first.
@@ -24,12 +26,10 @@ namespace corda {
 /// During its life, this thread takes numbers below 2.2e-308 (denormal ones) as 0. A damped rope halves its
 /// distance to equilibrium again and again, and x86 CPUs take a hundred times as long for an operation with
 /// denormal numbers. AArch64 does not slow down, but flushes them too, for the same bits.
-class FlushDenormals {
+class FlushDenormals : NonCopyable {
   public:
     FlushDenormals() { set_control(control_ | kFlush); }
     ~FlushDenormals() { set_control(control_); }
-    FlushDenormals(const FlushDenormals&) = delete;
-    FlushDenormals& operator=(const FlushDenormals&) = delete;
 
   private:
 #if defined(__x86_64__)

@@ -101,12 +101,10 @@ void sync_file(const Descriptor& file, const std::string& path);
 void sync_folder_of(const std::string& path);
 
 /// A folder in the system's directory for temporary files, removed with its contents.
-class TemporaryFolder {
+class TemporaryFolder : NonCopyable {
   public:
     /// Throws corda::Error (kIo) if there is no place for it.
     TemporaryFolder();
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
     ~TemporaryFolder();
 
     [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
@@ -117,13 +115,11 @@ class TemporaryFolder {
 
 /// Keeps other renders from a range of numbered files, by a lock file that exists meanwhile. Others may hold
 /// other ranges.
-class RangeLock {
+class RangeLock : NonCopyable {
   public:
     /// Locks `first` to `end`, without it; `path` is the lock file's. Throws corda::Error (kIo) if another
     /// render holds one of them, or if there can be no such file. A file system without locks locks nothing.
     RangeLock(std::string path, std::int64_t first, std::int64_t end, const std::string& what);
-    RangeLock(const RangeLock&) = delete;
-    RangeLock& operator=(const RangeLock&) = delete;
     ~RangeLock();
 
   private:

@@ -47,7 +47,7 @@ void remove_leftovers(const std::string& folder,
 /// final name; a file that already has this name, even one that appeared meanwhile, is replaced only with
 /// `force`. Then its permissions stay, and if the name is a symbolic link, the file it leads to is replaced.
 /// A device, a pipe or standard output is written to directly.
-class OutputFile {
+class OutputFile : NonCopyable {
   public:
     struct InMemory {};
     /// A file in memory, which can be read through bytes() and temporary_path() and never gets a name. Throws
@@ -55,8 +55,6 @@ class OutputFile {
     explicit OutputFile(InMemory);
     /// Creates the temporary file. Throws corda::Error (kIo), like all below.
     explicit OutputFile(std::string path, const OutputOptions& options = {});
-    OutputFile(const OutputFile&) = delete;
-    OutputFile& operator=(const OutputFile&) = delete;
     /// Removes the temporary file unless `commit` or `keep` was called.
     ~OutputFile();
 
@@ -122,11 +120,9 @@ void save_file(const std::string& path, std::string_view bytes,
 
 /// Exists while results are saved under their names. A signal lets this be completed: flushing to a slow disk
 /// may take seconds. Safe to ask for in a signal handler.
-class Saving {
+class Saving : NonCopyable {
   public:
     Saving() noexcept { ++count_; }
-    Saving(const Saving&) = delete;
-    Saving& operator=(const Saving&) = delete;
     ~Saving() { --count_; }
 
     [[nodiscard]] static bool is_active() noexcept { return count_ > 0; }

@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include "corda/core/basics.hpp"
+
 namespace corda {
 
 /// Starts up to `count` threads that do `work`. Returns those that the system started: perhaps fewer, perhaps
@@ -73,7 +75,7 @@ class TaskQueue {
 /// Several threads make numbered things, each thread with a state of its own, and the caller takes them in
 /// order. A thread that is too far ahead waits. For tasks without an order, see TaskQueue.
 template <class Thing>
-class OrderedWorkers {
+class OrderedWorkers : NonCopyable {
   public:
     /// Makes the thing of a number, on the thread that made the maker, until `all` is stopped.
     using Make = std::function<Thing(std::int64_t number, const OrderedWorkers& all)>;
@@ -85,8 +87,6 @@ class OrderedWorkers {
         : new_maker_(std::move(new_maker)), end_(end), ahead_(2 * threads), next_(first), taken_(first) {
         threads_ = start_threads(threads, [this] { work(); });
     }
-    OrderedWorkers(const OrderedWorkers&) = delete;
-    OrderedWorkers& operator=(const OrderedWorkers&) = delete;
     ~OrderedWorkers() {
         stop();
         threads_.clear();

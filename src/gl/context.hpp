@@ -52,14 +52,12 @@ struct Attempt {
 };
 
 /// An OpenGL 4.5 core context without a window. It is current on the thread that created it.
-class Context {
+class Context : NonCopyable {
   public:
     /// Tries EGL devices (GPUs first), Mesa's surfaceless platform and the default display, in this order, or
     /// only the platforms that `def` names. Throws corda::Error: kNoGl with the reason of every failure if no
     /// platform works, kTemporary if memory is too small.
     explicit Context(const ContextDef& def = {});
-    Context(const Context&) = delete;
-    Context& operator=(const Context&) = delete;
     ~Context();
 
     /// Makes this context current on the calling thread. Throws corda::Error (kNoGl), e.g. if it is current
@@ -90,11 +88,9 @@ class Context {
 
 /// Restores the current context of the calling thread, which may be the host application's or none, at the
 /// end of its life. Does nothing without EGL, and does not restore in a forked child.
-class SavedContext {
+class SavedContext : NonCopyable {
   public:
     SavedContext();
-    SavedContext(const SavedContext&) = delete;
-    SavedContext& operator=(const SavedContext&) = delete;
     ~SavedContext();
 
   private:

@@ -25,12 +25,10 @@ struct Platform {
 
 /// An initialised EGL display and a surfaceless context, current on this thread. All uses require
 /// lock_driver().
-class EglSession {
+class EglSession : NonCopyable {
   public:
     /// Throws corda::Error (kNoGl) with the failed step and EGL's reason.
     explicit EglSession(const Platform& platform);
-    EglSession(const EglSession&) = delete;
-    EglSession& operator=(const EglSession&) = delete;
     ~EglSession();
 
     /// Throws corda::Error (kNoGl); always in a forked child of the process that made it.

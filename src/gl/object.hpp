@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "corda/core/basics.hpp"
+
 namespace corda::gl {
 
 /// Owns one OpenGL object name and deletes it with `Kind::destroy`. Move-only. Its context must be current
@@ -84,11 +86,8 @@ class Program {
 
 /// A buffer that OpenGL reads pixels into asynchronously. Its context must be current whenever it is used and
 /// when it is destroyed.
-class PixelBuffer {
+class PixelBuffer : NonCopyable {
   public:
-    PixelBuffer() = default;
-    PixelBuffer(const PixelBuffer&) = delete;
-    PixelBuffer& operator=(const PixelBuffer&) = delete;
     ~PixelBuffer();
 
     /// Makes room for `bytes` and discards earlier contents. Until end(), glReadPixels() writes to this

@@ -46,12 +46,10 @@ class ByteReader {
 };
 
 /// SHA-256 (FIPS 180-4) of the bytes that are added.
-class Sha256 {
+class Sha256 : NonCopyable {
   public:
     /// Throws corda::Error (kTemporary).
     Sha256();
-    Sha256(const Sha256&) = delete;
-    Sha256& operator=(const Sha256&) = delete;
     ~Sha256();
     void add(std::string_view bytes);
     /// In hexadecimal. Nothing can be added afterwards.

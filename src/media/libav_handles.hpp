@@ -128,11 +128,8 @@ void set_duration(F& frame, std::int64_t duration) {
 }
 
 /// Options for an open call, given by name.
-class Options {
+class Options : NonCopyable {
   public:
-    Options() = default;
-    Options(const Options&) = delete;
-    Options& operator=(const Options&) = delete;
     ~Options() { av_dict_free(&dictionary_); }
 
     Options& set(const char* name, const std::string& value);
@@ -166,21 +163,17 @@ Handle check_allocated(Handle handle, const char* what) {
 ///
 /// The first one takes over the log callback, which libav has one of per process and does not tell: one that
 /// the host application had set is lost. While none lives, messages go to av_log_default_callback.
-class QuietLog {
+class QuietLog : NonCopyable {
   public:
     QuietLog();
-    QuietLog(const QuietLog&) = delete;
-    QuietLog& operator=(const QuietLog&) = delete;
     ~QuietLog();
 };
 
 /// A QuietLog that also collects, for messages, the errors that libav reports on this thread during the
 /// object's life. Objects may nest.
-class LogCapture {
+class LogCapture : NonCopyable {
   public:
     LogCapture();
-    LogCapture(const LogCapture&) = delete;
-    LogCapture& operator=(const LogCapture&) = delete;
     ~LogCapture();
 
     /// The lines so far, joined by "; "; at most a few hundred characters.

@@ -31,14 +31,12 @@ struct DrawContext {
 /// Draws the frames of a film without copying them, with an OpenGL context of its own, which is current on
 /// its thread as long as it lives; afterwards the previous one is current again. Several threads may make and
 /// use renderers of one film, each its own, as long as none uses the film itself.
-class FilmRenderer {
+class FilmRenderer : NonCopyable {
   public:
     /// `canvas`: keeps the OpenGL canvas of this thread for the next renderer. This renderer takes it, or
     /// opens one if there is none, and puts it back when it dies. Null: none is kept. Throws corda::Error:
     /// kNoGl, and what Film::camera() throws.
     explicit FilmRenderer(Film& film, pipeline::OwnedCanvas* canvas = nullptr);
-    FilmRenderer(const FilmRenderer&) = delete;
-    FilmRenderer& operator=(const FilmRenderer&) = delete;
     ~FilmRenderer();
 
     /// Draws the frame at a time; returns what may differ from the last one. Throws as Film::still().

@@ -28,15 +28,13 @@ namespace corda::pipeline {
 
 /// The states of one run of a system at the times of a timeline, readable in any order. They are simulated on
 /// first use and recorded; states beyond the memory budget are simulated again, with the same bits.
-class Motion {
+class Motion : NonCopyable {
   public:
     /// A motion that has not started, with one method per body or, if `methods` is empty, those that record()
     /// will find. `quantity` and `readings`: see sim::Recording. `system` must outlive it. Throws
     /// corda::Refusal if a method cannot run its body.
     Motion(const System& system, const WorldDef& world, std::vector<MethodDef> methods, Timeline timeline,
            std::size_t budget_bytes, std::optional<Quantity> quantity = {}, const StateFields& readings = {});
-    Motion(const Motion&) = delete;
-    Motion& operator=(const Motion&) = delete;
 
     /// Calls a planner with the recording, in which it records the run that it has verified.
     Plan record(const std::function<Plan(const Timeline&, sim::Recording&)>& plan);
@@ -106,12 +104,10 @@ class SharedMotion {
     explicit SharedMotion(const Scene& scene);
 
     /// A call, on this thread, that uses the motion or draws it.
-    class Activity {
+    class Activity : NonCopyable {
       public:
         /// Throws corda::Error (kUsage) inside of a callback of another activity with this motion.
         explicit Activity(const SharedMotion& motion);
-        Activity(const Activity&) = delete;
-        Activity& operator=(const Activity&) = delete;
         ~Activity();
 
       private:

@@ -13,10 +13,7 @@ namespace corda::pipeline {
 
 /// Objects that are destroyed in the reverse order of their making.
 template <class T>
-struct Nested : std::deque<T> {
-    Nested() = default;
-    Nested(const Nested&) = delete;
-    Nested& operator=(const Nested&) = delete;
+struct Nested : std::deque<T>, NonCopyable {
     ~Nested() {
         while (!this->empty()) this->pop_back();
     }

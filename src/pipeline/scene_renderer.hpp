@@ -41,13 +41,11 @@ struct Canvas {
 using OwnedCanvas = std::unique_ptr<Canvas, Canvas::Delete>;
 
 /// Draws a scene's bodies at any positions. The first Use opens OpenGL.
-class SceneRenderer {
+class SceneRenderer : NonCopyable {
   public:
     /// `scene` and its `system` must outlive the renderer. Throws corda::Error: kUsage for an unknown
     /// backend, kInvalidScene for an invalid size, style or camera.
     SceneRenderer(const Scene& scene, const System& system, const std::string& backend, bool require_gpu);
-    SceneRenderer(const SceneRenderer&) = delete;
-    SceneRenderer& operator=(const SceneRenderer&) = delete;
 
     /// True if pictures depend on the whole motion: the camera, the supports of pins, or a plot does.
     [[nodiscard]] bool needs_motion() const;

@@ -32,7 +32,7 @@ class Calls {
   public:
     /// Releases the interpreter's lock during one call, which counts from before the release until the lock
     /// is held again.
-    class Scope {
+    class Scope : NonCopyable {
       public:
         Scope() {
             if (has_ended()) never_return();
@@ -42,8 +42,6 @@ class Calls {
             }
             state_ = PyEval_SaveThread();
         }
-        Scope(const Scope&) = delete;
-        Scope& operator=(const Scope&) = delete;
         ~Scope() {
             while (has_given_up() && has_ended()) sleep_long();
             PyEval_RestoreThread(state_);
@@ -186,14 +184,12 @@ class Asking {
 };
 
 /// A film that any thread of Python may use; calls of several threads wait for each other.
-class PyFilm {
+class PyFilm : NonCopyable {
   public:
     PyFilm(const Scene& scene, const std::string& backend, bool require_gpu) {
         const FilmDef def{.backend = backend, .require_gpu = require_gpu};
         Asking().run([&] { film_ = std::make_unique<Film>(scene, def); });
     }
-    PyFilm(const PyFilm&) = delete;
-    PyFilm& operator=(const PyFilm&) = delete;
     ~PyFilm() {
         const Calls::Scope call;
         const std::unique_lock lock(mutex_, std::try_to_lock);
@@ -255,14 +251,12 @@ class PyFilm {
     }
 
     /// Marks the film as used by this thread.
-    class Use {
+    class Use : NonCopyable {
       public:
         explicit Use(PyFilm& film) : film_(&film) {
             film.process_ = getpid();
             film.thread_ = std::this_thread::get_id();
         }
-        Use(const Use&) = delete;
-        Use& operator=(const Use&) = delete;
         ~Use() {
             film_->thread_ = std::thread::id();
             film_->process_ = 0;

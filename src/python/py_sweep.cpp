@@ -13,14 +13,12 @@ namespace corda::python {
 namespace {
 
 /// A sweep whose pictures are arrays. One thread at a time may use it.
-class PySweep {
+class PySweep : NonCopyable {
   public:
     explicit PySweep(const std::string& path)
         : sweep_(Asking().run([&] { return sweep::load_sweep(path); })), maker_(std::in_place, sweep_) {
         if (sweep_.pictures != sweep::Pictures::kNone) sweep_.pictures = sweep::Pictures::kNpz;
     }
-    PySweep(const PySweep&) = delete;
-    PySweep& operator=(const PySweep&) = delete;
     ~PySweep() {
         const Calls::Scope call;
         maker_.reset();

@@ -46,11 +46,8 @@ struct PageDef {
 };
 
 /// A page of vector graphics. The same calls give the same bytes.
-class VectorPage {
+class VectorPage : NonCopyable {
   public:
-    VectorPage() = default;
-    VectorPage(const VectorPage&) = delete;
-    VectorPage& operator=(const VectorPage&) = delete;
     virtual ~VectorPage() = default;
 
     /// Draws a list with its ground, clipped to its size, with the top left corner at (x_px, y_px). Throws

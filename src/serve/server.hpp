@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "corda/core/basics.hpp"
+
 namespace corda::serve {
 
 /// A request that has passed the checks of a Server.
@@ -41,15 +43,13 @@ struct ServerDef {
 
 /// A web server for one person, at 127.0.0.1. It answers requests that know its random token and name this
 /// machine as their host and their origin, so that neither other users nor pages of other sites can use it.
-class Server {
+class Server : NonCopyable {
   public:
     /// Answers one request on a thread of its own, within half a minute.
     using Handler = std::function<Response(const Request&)>;
 
     /// Throws corda::Error: kIo if the port cannot be used, kTemporary if libmicrohttpd cannot be loaded.
     Server(const ServerDef& def, Handler handler);
-    Server(const Server&) = delete;
-    Server& operator=(const Server&) = delete;
     /// Waits for the requests that are being answered.
     ~Server();
 

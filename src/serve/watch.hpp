@@ -32,12 +32,10 @@ struct WatchDef {
 /// A scene file as a film that follows the file, for a page of a Server. A thread of its own simulates and
 /// draws; a change of the file or of a number interrupts it, and the last good film stays until the next one
 /// is there.
-class Watch {
+class Watch : NonCopyable {
   public:
     /// Begins to load the scene; its errors are shown by the page.
     explicit Watch(WatchDef def);
-    Watch(const Watch&) = delete;
-    Watch& operator=(const Watch&) = delete;
     ~Watch();
 
     /// Ends all work, and answers the requests that wait. To be called before the server ends.

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "corda/core/basics.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/forces/elastic_forces.hpp"
 #include "corda/sim/forces/forces.hpp"
@@ -38,10 +39,8 @@ inline GridTime locate(double time_s, double step_s) {
 }
 
 /// A method that moves a System through time.
-class Solver {
+class Solver : NonCopyable {
   public:
-    Solver(const Solver&) = delete;
-    Solver& operator=(const Solver&) = delete;
     virtual ~Solver() = default;
 
     /// Writes the positions at exactly `time_s` to `state`, which has room for all particles. Times must not

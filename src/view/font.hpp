@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
 #include "corda/view/draw_list.hpp"
 
@@ -44,12 +45,10 @@ struct FontRun {
 };
 
 /// DejaVu Sans, which is part of the program, or another font, as FreeType reads it.
-class FontFile {
+class FontFile : NonCopyable {
   public:
     /// Throws corda::Error (kInternal) if it cannot be read.
     explicit FontFile(const FallbackFont* font = nullptr);
-    FontFile(const FontFile&) = delete;
-    FontFile& operator=(const FontFile&) = delete;
     ~FontFile();
 
     [[nodiscard]] FT_FaceRec_* face() const { return face_; }

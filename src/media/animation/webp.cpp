@@ -18,10 +18,8 @@ using Mux = std::unique_ptr<WebPMux, decltype(&WebPMuxDelete)>;
 }
 
 /// A picture encoded by libwebp, with the memory that libwebp frees.
-struct Encoded {
+struct Encoded : NonCopyable {
     Encoded() { WebPMemoryWriterInit(&writer); }
-    Encoded(const Encoded&) = delete;
-    Encoded& operator=(const Encoded&) = delete;
     ~Encoded() { WebPMemoryWriterClear(&writer); }
     WebPMemoryWriter writer{};
 };

@@ -24,14 +24,12 @@ struct TrackInfo {
 
 /// Writes a file with one video track by a muxer of libav, with its index ahead of the pictures. Time stamps
 /// of packets are frame numbers.
-class TrackOutput {
+class TrackOutput : NonCopyable {
   public:
     /// Writes the header. `output` must outlive this; `container` is libav's name of the muxer. Throws
     /// corda::Error (kIo), like all below.
     TrackOutput(const OutputFile& output, const char* container, const AVCodecParameters& parameters,
                 const TrackInfo& info);
-    TrackOutput(const TrackOutput&) = delete;
-    TrackOutput& operator=(const TrackOutput&) = delete;
     ~TrackOutput();
 
     /// Writes a packet (pts and dts in frames, duration 1), which is empty afterwards.

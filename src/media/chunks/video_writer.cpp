@@ -24,11 +24,8 @@
 namespace corda::media {
 
 /// Destination of the chunks of a video. All functions throw corda::Error (kIo).
-class VideoSink {
+class VideoSink : NonCopyable {
   public:
-    VideoSink() = default;
-    VideoSink(const VideoSink&) = delete;
-    VideoSink& operator=(const VideoSink&) = delete;
     virtual ~VideoSink() = default;
 
     /// Whether a chunk is to be added: another is there, or is another shard's.
@@ -71,8 +68,6 @@ class FolderSink : public VideoSink {
         std::error_code ignored;
         for (const ChunkFile& file : unusable) std::filesystem::remove(file.path, ignored);
     }
-    FolderSink(const FolderSink&) = delete;
-    FolderSink& operator=(const FolderSink&) = delete;
     /// Removes a folder without a chunk, which is of no use.
     ~FolderSink() override {
         if (frames_ == 0 && !output_.shard) folder_.remove();

@@ -59,7 +59,7 @@ class VideoSink;
 /// copies the chunks into a file of temporary name (of an animation, encodes it from their exact pictures),
 /// verifies that, and only then gives it the final name. Whatever has the final name is complete and
 /// verified. Pictures and standard output have no chunk files: each frame is complete as it is.
-class VideoWriter {
+class VideoWriter : NonCopyable {
   public:
     /// Opens the folder, for the frames of `output` or fewer. Chunks that are there already count as written:
     /// the video will have the bytes of an uninterrupted render. Throws corda::Error: kIo if the folder
@@ -69,8 +69,6 @@ class VideoWriter {
     /// Checks the output first, and throws as check_video_output() too.
     VideoWriter(const std::string& path, const VideoDef& def, const VideoMetadata& metadata,
                 const OutputOptions& options = {});
-    VideoWriter(const VideoWriter&) = delete;
-    VideoWriter& operator=(const VideoWriter&) = delete;
     /// Without `finish` whole chunks stay in the folder.
     ~VideoWriter();
 

@@ -15,13 +15,10 @@
 namespace corda::media {
 
 /// Turns frames into the packets of one video track. Time stamps and durations of packets count frames.
-class Encoder {
+class Encoder : NonCopyable {
   public:
     using PacketSink = std::function<void(AVPacket&)>;
 
-    Encoder() = default;
-    Encoder(const Encoder&) = delete;
-    Encoder& operator=(const Encoder&) = delete;
     virtual ~Encoder() = default;
 
     /// Encodes the next frame: `frame` inside `damage` and the previous frame elsewhere; the first frame is
@@ -54,8 +51,6 @@ class LibavEncoder : public Encoder {
     /// Opens the encoder of `format`. Throws corda::Error (kEncoder).
     LibavEncoder(const Format& format, const VideoDef& def, Convert convert = convert_pixels);
 
-    LibavEncoder(const LibavEncoder&) = delete;
-    LibavEncoder& operator=(const LibavEncoder&) = delete;
     ~LibavEncoder() override;
 
     void encode(const Image& frame, const Damage& damage, const PacketSink& sink) override;

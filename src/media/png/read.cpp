@@ -32,7 +32,7 @@ constexpr png_alloc_size_t kMaxTextBytes = png_alloc_size_t{64} << 10;
 enum class Wanted { kPixels, kTexts };
 
 /// Data of libpng's callbacks. It lives outside the functions that longjmp returns to.
-struct ReadJob {
+struct ReadJob : NonCopyable {
     png_structp png = nullptr;
     png_infop info = nullptr;
     std::FILE* file = nullptr;
@@ -45,8 +45,6 @@ struct ReadJob {
     char message[160] = "out of memory";
 
     explicit ReadJob(Wanted what) : wanted(what) {}
-    ReadJob(const ReadJob&) = delete;
-    ReadJob& operator=(const ReadJob&) = delete;
     ~ReadJob() { png_destroy_read_struct(&png, &info, nullptr); }
 };
 

@@ -53,16 +53,13 @@ bool is_opaque(const Image& image) {
 }
 
 /// Data of libpng's callbacks. It lives outside the function that longjmp returns to.
-struct WriteJob {
+struct WriteJob : NonCopyable {
     png_structp png = nullptr;
     png_infop info = nullptr;
     std::function<void(std::string_view)> sink;
     std::exception_ptr write_error;
     char message[160] = "out of memory";
 
-    WriteJob() = default;
-    WriteJob(const WriteJob&) = delete;
-    WriteJob& operator=(const WriteJob&) = delete;
     ~WriteJob() { png_destroy_write_struct(&png, &info); }
 };
 

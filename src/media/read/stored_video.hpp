@@ -36,7 +36,7 @@ struct StoredPicture {
 
 /// Reads the pictures of a video of any kind that Corda writes as they are stored, in the order in which a
 /// player shows them.
-class StoredVideo {
+class StoredVideo : NonCopyable {
   public:
     /// Loads the libraries that decode. Call it before a fork whose child reads videos. Throws corda::Error:
     /// kEncoder if they are missing, kTemporary if memory is short.
@@ -45,8 +45,6 @@ class StoredVideo {
     /// Throws corda::Error (kIo) if the file is not a video that can be decoded, or breaks off before its
     /// end.
     explicit StoredVideo(const std::string& path);
-    StoredVideo(const StoredVideo&) = delete;
-    StoredVideo& operator=(const StoredVideo&) = delete;
     ~StoredVideo();
 
     /// Frames per second; 0/1 if the file does not tell them.

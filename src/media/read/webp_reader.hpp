@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
 #include "corda/core/rational.hpp"
 
@@ -14,12 +15,10 @@ struct WebPAnimDecoder;
 namespace corda::media {
 
 /// Reads the pictures of an animated WebP, by libwebp: libavcodec does not decode them.
-class WebpReader {
+class WebpReader : NonCopyable {
   public:
     /// Throws corda::Error (kIo) if the file cannot be opened for reading.
     explicit WebpReader(const std::string& path);
-    WebpReader(const WebpReader&) = delete;
-    WebpReader& operator=(const WebpReader&) = delete;
 
     /// True if libwebp accepts the file; if not, there is nothing to read.
     [[nodiscard]] bool is_open() const { return decoder_ != nullptr; }

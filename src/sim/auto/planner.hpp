@@ -58,7 +58,7 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
 /// The checks of a trial: tighter runs in turned coordinates, which round otherwise than the trial's run, and
 /// than one another, from the start on. Those of large systems advance in threads of their own; positions are
 /// the same either way.
-class Checks {
+class Checks : NonCopyable {
   public:
     static constexpr std::size_t kMaxCount = 3;
 
@@ -68,8 +68,6 @@ class Checks {
     /// For a string of rigid links: runs in which links come taut `longer_m` later or earlier. Of any two of
     /// eight neighbours, each is the earlier one in some run.
     Checks(const System& string, const Forces& forces, const ExactDef& method, double longer_m);
-    Checks(const Checks&) = delete;
-    Checks& operator=(const Checks&) = delete;
     /// Ends the work of start().
     ~Checks();
 

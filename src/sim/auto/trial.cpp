@@ -195,7 +195,7 @@ class Linkage {
 
 }  // namespace
 
-class Checks::Check {
+class Checks::Check : NonCopyable {
   public:
     Check(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
           std::size_t number, const std::vector<double>& longer_m = {})
@@ -222,8 +222,6 @@ class Checks::Check {
         }
         state_ = {0.0, system_.x_m, system_.y_m};
     }
-    Check(const Check&) = delete;
-    Check& operator=(const Check&) = delete;
 
     [[nodiscard]] double margin_m() const { return string_ == nullptr ? HUGE_VAL : string_->margin_m(); }
 

@@ -15,11 +15,8 @@ struct Row;
 }
 
 /// An autonomous system of ordinary differential equations, y' = f(y), for Dop853.
-class Ode {
+class Ode : NonCopyable {
   public:
-    Ode() = default;
-    Ode(const Ode&) = delete;
-    Ode& operator=(const Ode&) = delete;
     virtual ~Ode() = default;
 
     /// Writes f(y) to `slope`. Both have one entry per component and do not overlap.

@@ -59,10 +59,8 @@ struct Stage {
 /// Keeps rigid bars at their rest lengths: the linear algebra of method `rattle`. Impulses are per length, in
 /// N s / m: bar k with the vector d from a to b changes the velocity of a by impulse w_a d and that of b by
 /// -impulse w_b d; a positive impulse pulls. There is an implementation for chains and one for any graph.
-class ConstraintSolver {
+class ConstraintSolver : NonCopyable {
   public:
-    ConstraintSolver(const ConstraintSolver&) = delete;
-    ConstraintSolver& operator=(const ConstraintSolver&) = delete;
     virtual ~ConstraintSolver() = default;
 
     /// Takes one stage. `impulse` has one entry per link: on entry a guess, on return the impulses. False if
