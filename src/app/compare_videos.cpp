@@ -208,7 +208,7 @@ bool is_video_name(const std::string& path) {
     const std::string ending = std::filesystem::path(path).extension().string();
     constexpr std::array<std::string_view, 10> kEndings{".mp4",  ".mov",  ".mkv", ".webm", ".gif",
                                                         ".apng", ".webp", ".m4v", ".avi",  ".y4m"};
-    return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+    return std::ranges::find(kEndings, ending) != kEndings.end();
 }
 
 ExitCode compare_videos(const Console& console, const CompareOptions& options,

@@ -81,10 +81,9 @@ void print_formats(const Console& console, const std::vector<Writable>& formats)
 
 /// The last word on a machine without a usable platform.
 std::string cannot_draw(const std::vector<gl::Attempt>& attempts) {
-    const bool has_remedy_above =
-        std::any_of(attempts.begin(), attempts.end(), [](const gl::Attempt& attempt) {
-            return attempt.info.has_value() || attempt.platform == gl::kEveryPlatform;
-        });
+    const bool has_remedy_above = std::ranges::any_of(attempts, [](const gl::Attempt& attempt) {
+        return attempt.info.has_value() || attempt.platform == gl::kEveryPlatform;
+    });
     return has_remedy_above ? "This machine cannot draw, for the reason above."
                             : "This machine cannot draw. " + gl::driver_remedy();
 }
@@ -94,11 +93,9 @@ ExitCode doctor(const Console& console) {
     const std::vector<media::EncoderProbe> encoders = media::probe_encoders();
     const std::vector<gl::Attempt> attempts = gl::probe_contexts(
         [](const gl::Context& context) { render::check_driver(context); }, render::try_driver);
-    const bool has_gl =
-        std::any_of(attempts.begin(), attempts.end(), [](const gl::Attempt& a) { return a.is_usable(); });
-    const bool is_temporary = std::any_of(attempts.begin(), attempts.end(), [](const gl::Attempt& a) {
-        return a.code == ExitCode::kTemporary;
-    });
+    const bool has_gl = std::ranges::any_of(attempts, &gl::Attempt::is_usable);
+    const bool is_temporary =
+        std::ranges::any_of(attempts, [](const gl::Attempt& a) { return a.code == ExitCode::kTemporary; });
     print_contexts(console, attempts);
     const std::string dropped = gl::dropped_variable();
     if (!dropped.empty())
@@ -112,9 +109,7 @@ ExitCode doctor(const Console& console) {
     for (const Writable& format : formats)
         (format.usable.empty() ? missing : written).push_back(format.ending);
     if (!written.empty()) console.result(fmt::format("It can write {}.", fmt::join(written, ", ")));
-    const bool lacks_resources =
-        std::any_of(encoders.begin(), encoders.end(),
-                    [](const media::EncoderProbe& encoder) { return encoder.is_temporary; });
+    const bool lacks_resources = std::ranges::any_of(encoders, &media::EncoderProbe::is_temporary);
     if (!missing.empty()) {
         console.result(fmt::format("It cannot write {}{}", fmt::join(missing, ", "),
                                    lacks_resources

@@ -86,9 +86,7 @@ void tell(const Console& console, const GoldenOptions& options, const golden::Su
                            {"notes", result.notes},
                            {"pictures", pictures}};
     if (invalid > 0) {
-        const auto first =
-            std::find_if(result.pictures.begin(), result.pictures.end(),
-                         [](const Checked& picture) { return picture.verdict == Verdict::kInvalid; });
+        const auto first = std::ranges::find(result.pictures, Verdict::kInvalid, &Checked::verdict);
         json["error"] = {{"code", static_cast<int>(ExitCode::kInvalidScene)},
                          {"message", printable_lines(first->cause)}};
     }
@@ -161,8 +159,7 @@ ExitCode run_suite(const Console& console, GoldenOptions options) {
     if (!options.markdown.empty()) save_file(options.markdown, golden::markdown(result));
     tell(console, options, result);
     if (result.count(Verdict::kInvalid) > 0) return ExitCode::kInvalidScene;
-    bool failed = std::any_of(result.pictures.begin(), result.pictures.end(),
-                              [](const Checked& picture) { return picture.failed(); });
+    bool failed = std::ranges::any_of(result.pictures, &Checked::failed);
     if (failed && options.reviews) failed = review(console, options.def, result) > 0;
     return failed ? ExitCode::kMismatch : ExitCode::kOk;
 }

@@ -79,7 +79,7 @@ std::optional<std::string> unknown_option(const CLI::App& app, int argc, char** 
         const std::string_view argument = argv[i];
         if (argument == "--") return std::nullopt;
         const std::string word(argument.substr(0, argument.find('=')));
-        if (word.starts_with("--") && std::find(names.begin(), names.end(), word) == names.end())
+        if (word.starts_with("--") && std::ranges::find(names, word) == names.end())
             return fmt::format("unknown option {}; {}", word, advice(word, names));
     }
     return std::nullopt;

@@ -28,7 +28,7 @@ Scene load_with(const std::vector<Setting>& settings, const std::vector<Setting>
         if (error.code() != ExitCode::kInvalidScene || of_options.empty()) throw;
         std::vector<Setting> others = settings;
         std::erase_if(others, [&of_options](const Setting& setting) {
-            return std::find(of_options.begin(), of_options.end(), setting) != of_options.end();
+            return std::ranges::find(of_options, setting) != of_options.end();
         });
         const std::string problem = error.what();
         try {
@@ -73,7 +73,7 @@ RequestedFrames frames_of(const std::string& word, const Scene& scene) {
     } else if (const auto parsed = parse_frames(word)) {
         range = *parsed;
     } else {
-        const bool has_step = std::count(word.begin(), word.end(), ':') > 1;
+        const bool has_step = std::ranges::count(word, ':') > 1;
         throw_usage("--frame {}: is neither a frame number nor a range FIRST:END of them{}", word,
                     has_step ? "; a range has no step: list frames such as 0,24,48" : "");
     }
@@ -184,8 +184,8 @@ void SceneOptions::check_size_from_file(const VideoDef& video) const {
 }
 
 bool SceneOptions::gives_size() const {
-    return std::any_of(settings.begin(), settings.end(),
-                       [](const Setting& setting) { return setting.starts_with("video.size"); });
+    return std::ranges::any_of(settings,
+                               [](const Setting& setting) { return setting.starts_with("video.size"); });
 }
 
 Scene SceneOptions::load_from(const Provenance& origin) const {
@@ -347,8 +347,7 @@ std::vector<RequestedTime> TimeOptions::list(const Scene& scene) const {
         for (std::int64_t k = range.first; k < *range.end; ++k)
             times.push_back({scene.video.scene_rate().time_s(k), k});
     }
-    std::stable_sort(times.begin(), times.end(),
-                     [](const RequestedTime& a, const RequestedTime& b) { return a.time_s < b.time_s; });
+    std::ranges::stable_sort(times, {}, &RequestedTime::time_s);
     return times;
 }
 

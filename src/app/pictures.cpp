@@ -152,7 +152,7 @@ std::vector<double> FigureOptions::film_times(const std::vector<RequestedTime>& 
     std::vector<double> times_s = film_times_of_origin;
     for (const RequestedTime& time : some)
         if (!time.frame) times_s.push_back(time.time_s);
-    std::sort(times_s.begin(), times_s.end());
+    std::ranges::sort(times_s);
     times_s.erase(std::unique(times_s.begin(), times_s.end()), times_s.end());
     return times_s;
 }
@@ -169,9 +169,9 @@ PngInfo FigureOptions::png_info(const Scene& loaded, const std::vector<Requested
         width_mm ? loaded.video.width_px * kMmPerInch / *width_mm : pixels_per_inch.value_or(kScreenPpi);
     for (const RequestedTime& time : some)
         origin.times.push_back({time.frame, time.frame ? 0.0 : time.time_s});
-    const bool are_its_own = std::all_of(all_s.begin(), all_s.end(), [&](double time_s) {
-        return std::any_of(origin.times.begin(), origin.times.end(),
-                           [&](const PictureTime& its) { return !its.frame && its.time_s == time_s; });
+    const bool are_its_own = std::ranges::all_of(all_s, [&](double time_s) {
+        return std::ranges::any_of(
+            origin.times, [&](const PictureTime& its) { return !its.frame && its.time_s == time_s; });
     });
     if (!are_its_own) origin.film_times_s = all_s;
     if (ppi != kScreenPpi) origin.pixels_per_inch = ppi;
@@ -249,15 +249,15 @@ bool is_picture(const std::string& output) {
 std::string name_of(const RequestedTime& time, const Scene& scene) {
     std::string name = time.frame ? fmt::format("{}_f{:06}", scene.name, *time.frame)
                                   : fmt::format("{}_t{:011.6f}", scene.name, time.time_s);
-    std::replace(name.begin(), name.end(), '.', '_');
+    std::ranges::replace(name, '.', '_');
     return name + ".png";
 }
 
 std::vector<Still> list_stills(const std::vector<RequestedTime>& times, const Scene& scene) {
     std::vector<Still> stills;
     for (const RequestedTime& time : times) stills.push_back({time, name_of(time, scene)});
-    const auto same = std::adjacent_find(stills.begin(), stills.end(),
-                                         [](const Still& a, const Still& b) { return a.path == b.path; });
+    const auto same =
+        std::ranges::adjacent_find(stills, [](const Still& a, const Still& b) { return a.path == b.path; });
     if (same != stills.end()) throw_usage("two stills would both be {}; ask for each time once", same->path);
     return stills;
 }

@@ -55,7 +55,7 @@ void warn_of_horizon(const Console& console, const Film& film) {
     const Plan& plan = film.plan();
     if (!plan.horizon_s) return;
     const auto is_first = [&](const BodyPlan& body) { return body.horizon_s == plan.horizon_s; };
-    const auto first = std::find_if(plan.bodies.begin(), plan.bodies.end(), is_first);
+    const auto first = std::ranges::find_if(plan.bodies, is_first);
     const std::string whose =
         plan.bodies.size() == 1
             ? ""

@@ -62,11 +62,10 @@ void parse_range(std::string_view text, RenderDef& def) {
 /// number of frames.
 std::string range_of(const Console& console, const RenderOptions& options) {
     const std::vector<std::string>& settings = options.scene.settings;
-    const bool has_its_frames =
-        std::none_of(settings.begin(), settings.end(), [](const std::string& setting) {
-            return setting.starts_with("world.duration") || setting.starts_with("video.fps") ||
-                   setting.starts_with("video.speed");
-        });
+    const bool has_its_frames = std::ranges::none_of(settings, [](const std::string& setting) {
+        return setting.starts_with("world.duration") || setting.starts_with("video.fps") ||
+               setting.starts_with("video.speed");
+    });
     const bool takes_its = options.scene.is_from() && options.frames.empty() && has_its_frames;
     return takes_its ? options.scene.provenance(console).frames : options.frames;
 }
@@ -328,8 +327,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     const auto is_empty = [k](Film& film) {
         return FilmRenderer::is_empty(film, film.time_s(std::min(k, film.frame_count() - 1)));
     };
-    const auto shown =
-        rendered.empty_frames > 0 ? std::find_if(films.begin(), films.end(), is_empty) : films.end();
+    const auto shown = rendered.empty_frames > 0 ? std::ranges::find_if(films, is_empty) : films.end();
     return empty.report(console, rendered.frames,
                         (shown == films.end() ? films.front() : *shown).scene().camera);
 }

@@ -21,7 +21,7 @@ Timeline::Timeline(FrameRate fps, std::int64_t last_frame, std::vector<double> s
       frame_count_(static_cast<std::size_t>(last_frame) + 1),
       still_times_s_(std::move(still_times_s)) {
     assert(last_frame >= 0);
-    std::sort(still_times_s_.begin(), still_times_s_.end());
+    std::ranges::sort(still_times_s_);
     still_times_s_.erase(std::unique(still_times_s_.begin(), still_times_s_.end()), still_times_s_.end());
     std::erase_if(still_times_s_, [this](double time_s) {
         const std::size_t k = frames_before(time_s);
@@ -47,7 +47,7 @@ double Timeline::time_s(std::size_t i) const {
 }
 
 bool Timeline::is_frame(std::size_t i) const {
-    return !std::binary_search(still_index_.begin(), still_index_.end(), i);
+    return !std::ranges::binary_search(still_index_, i);
 }
 
 std::optional<std::size_t> Timeline::find(double time_s) const {

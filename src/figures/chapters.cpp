@@ -118,7 +118,7 @@ std::vector<pipeline::TrackedParticle> followed_of(const MotionSummary& motion) 
 /// How many bodies turn about their pins: near a point, the angle about it has no meaning.
 std::ptrdiff_t turning_count(const System& system, const MotionSummary& motion) {
     constexpr double kNear = 0.1;
-    return std::count_if(motion.bodies.begin(), motion.bodies.end(), [&](const BodyCurves& body) {
+    return std::ranges::count_if(motion.bodies, [&](const BodyCurves& body) {
         const double length_m = links_length_m(system, system.bodies[body.followed.body]);
         return body.followed.pin && body.followed.is_free_end && body.nearest_m >= kNear * length_m;
     });
@@ -132,7 +132,7 @@ std::string period_text(const Scene& scene, const MotionSummary& motion) {
             "No period is measured: the film of {:g} s has no whole one between passes below "
             "the pin.",
             scene.world.duration_s);
-    const auto [least, most] = std::minmax_element(all_s.begin(), all_s.end());
+    const auto [least, most] = std::ranges::minmax_element(all_s);
     const double mean_s =
         std::accumulate(all_s.begin(), all_s.end(), 0.0) / static_cast<double>(all_s.size());
     const std::string least_text = fmt::format("{:.5g}", *least);
@@ -163,7 +163,7 @@ std::string unknown_text(const Film& film, const MotionSummary& motion) {
     const auto relaxes = [&](std::size_t b) { return !sim::knows_tensions(film.plan().bodies[b].method); };
     const auto& bodies = motion.unknown_tensions;
     const std::string names = bodies_text(film.system(), bodies);
-    if (std::all_of(bodies.begin(), bodies.end(), relaxes)) {
+    if (std::ranges::all_of(bodies, relaxes)) {
         return fmt::format(
             "Tensions of {} are not known: method relaxation moves particles until bars have "
             "their lengths, without forces in them.",
@@ -171,8 +171,7 @@ std::string unknown_text(const Film& film, const MotionSummary& motion) {
     }
     return fmt::format(
         "Tensions of {} are not known: bars that depend on each other share them in any way{}.", names,
-        std::any_of(bodies.begin(), bodies.end(), relaxes) ? ", and method relaxation knows no forces in bars"
-                                                           : "");
+        std::ranges::any_of(bodies, relaxes) ? ", and method relaxation knows no forces in bars" : "");
 }
 
 /// The tensions of the links of a chain or a ring when the largest of all is reached.
@@ -352,8 +351,8 @@ report::Chapter tension_chapter(const Film& film, const MotionSummary& motion) {
                                   time_text(largest.time_s), link_text(system, largest));
     std::vector<Curve> curves = curves_of(film.scene(), system, motion, &BodyCurves::tension);
     std::erase_if(curves, [](const Curve& curve) {
-        return std::all_of(curve.points.begin(), curve.points.end(),
-                           [](const view::CurvePoint& point) { return std::isnan(point.y); });
+        return std::ranges::all_of(curve.points,
+                                   [](const view::CurvePoint& point) { return std::isnan(point.y); });
     });
     if (!curves.empty()) {
         report::Plot plot =
@@ -373,8 +372,8 @@ report::Chapter strain_chapter(const Film& film, const MotionSummary& motion) {
     chapter.title = "Strain";
     const System& system = film.system();
     const Extreme& largest = motion.strain;
-    const bool stretches = std::any_of(system.bodies.begin(), system.bodies.end(),
-                                       [](const Body& body) { return body.material.compliance_1_n > 0.0; });
+    const bool stretches = std::ranges::any_of(
+        system.bodies, [](const Body& body) { return body.material.compliance_1_n > 0.0; });
     if (largest.is_known) {
         chapter.summary = fmt::format(
             "The largest strain, | length / rest length - 1 |, is {} at {} ({}){}.",

@@ -29,7 +29,7 @@ double luminance(const Color& color) {
 }
 
 bool all_show(const std::vector<Color>& colors) {
-    return std::all_of(colors.begin(), colors.end(), shows_on_white);
+    return std::ranges::all_of(colors, shows_on_white);
 }
 
 }  // namespace
@@ -104,8 +104,7 @@ void prefer_paper(Scene& scene) {
     StyleDef& style = scene.style;
     const auto& ground = style.background;
     const bool is_dark = ground && (shows_on_white(ground->top) || shows_on_white(ground->bottom));
-    const bool show = all_show(style.palette) &&
-                      std::all_of(scene.body_styles.begin(), scene.body_styles.end(), [](const auto& body) {
+    const bool show = all_show(style.palette) && std::ranges::all_of(scene.body_styles, [](const auto& body) {
                           return (!body.color || shows_on_white(*body.color)) && all_show(body.link_colors);
                       });
     if (!style.theme && !is_dark && show) style.theme = Theme::kPaper;
@@ -118,10 +117,10 @@ std::vector<std::string> curve_colors(const Scene& scene, const std::vector<std:
     for (std::size_t b = 0; !bodies.empty() && b <= bodies.back(); ++b) {
         const BodyStyleDef own = b < scene.body_styles.size() ? scene.body_styles[b] : BodyStyleDef{};
         Color color = own.color ? *own.color : palette[next++ % palette.size()];
-        if (std::find(bodies.begin(), bodies.end(), b) == bodies.end()) continue;
+        if (std::ranges::find(bodies, b) == bodies.end()) continue;
         color.a = 255;
         const std::string text = color.text();
-        const bool is_taken = std::find(texts.begin(), texts.end(), text) != texts.end();
+        const bool is_taken = std::ranges::find(texts, text) != texts.end();
         const bool tells_bodies = scene.style.color_by == ColorBy::kBody;
         if (is_taken || !tells_bodies || !shows_on_white(color))
             return std::vector<std::string>(bodies.size());

@@ -34,7 +34,7 @@ std::optional<double> first_turn_s(const CurvePoints& path) {
     constexpr double kFarEnough = 0.25;
     if (path.size() < 3) return std::nullopt;
     const auto by_x = [](const view::CurvePoint& a, const view::CurvePoint& b) { return a.x < b.x; };
-    const auto [left, right] = std::minmax_element(path.begin(), path.end(), by_x);
+    const auto [left, right] = std::ranges::minmax_element(path, by_x);
     const double enough_m = kFarEnough * (right->x - left->x);
     for (std::size_t i = 1; i + 1 < path.size(); ++i) {
         const double before = path[i].x - path[i - 1].x;
@@ -66,7 +66,7 @@ FigureTimes find_figure_times(const Film& film, const MotionSummary& motion,
         const double end_s = motion.failure ? motion.end_s : film.scene().world.duration_s;
         for (const double time_s : asked_s)
             if (time_s <= end_s) times.stills_s.push_back(time_s);
-        std::sort(times.stills_s.begin(), times.stills_s.end());
+        std::ranges::sort(times.stills_s);
         times.strobe_s = times.stills_s;
         return times;
     }

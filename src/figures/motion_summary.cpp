@@ -40,8 +40,7 @@ class Reader {
             motion_.bodies.push_back({followed});
         tells_tension_.resize(system_.bodies.size());
         const auto stretches = [](const Body& body) { return body.material.compliance_1_n > 0.0; };
-        motion_.is_elastic =
-            !system_.bends.empty() || std::any_of(system_.bodies.begin(), system_.bodies.end(), stretches);
+        motion_.is_elastic = !system_.bends.empty() || std::ranges::any_of(system_.bodies, stretches);
         open_rows(open);
     }
 

@@ -72,9 +72,8 @@ std::optional<PeriodTheory> period_theory(const Scene& scene, double angle_deg) 
         return {{pendulum_s(std::sqrt(gravity / (links * *length_m))),
                  "a point pendulum of this amplitude, with all mass at the end of the rope,"}};
     const bool has_equal_masses =
-        rope.payload_kg == 0.0 && std::all_of(rope.mass_kg.begin(), rope.mass_kg.end(), [&](double mass_kg) {
-            return mass_kg == rope.mass_kg.front();
-        });
+        rope.payload_kg == 0.0 &&
+        std::ranges::all_of(rope.mass_kg, [&](double mass_kg) { return mass_kg == rope.mass_kg.front(); });
     if (!has_equal_masses) return std::nullopt;
     if (rope.reach > 1)
         return {{pendulum_s(reference::rod_omega0_1_s(links, *length_m, gravity)),

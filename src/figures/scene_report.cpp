@@ -122,7 +122,7 @@ std::optional<Error> write_scene_report(Film& film, const SceneReportDef& def, r
     const FigureTimes times = find_figure_times(film, motion, def.at_s);
     std::vector<double> drawn_s = times.strobe_s;
     drawn_s.insert(drawn_s.end(), times.stills_s.begin(), times.stills_s.end());
-    std::sort(drawn_s.begin(), drawn_s.end());
+    std::ranges::sort(drawn_s);
     FilmRenderer::keep(film, drawn_s);
     const auto write = [&](const std::string& path, double width_mm, const std::vector<double>& times_s) {
         drawings.write(path, width_mm, times_s, def.output);

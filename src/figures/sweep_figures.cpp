@@ -50,7 +50,7 @@ struct SweepColumn {
         }
         if (const scene::Key* const key = is_summary || !unit.empty() ? nullptr : schema_key())
             unit = key->unit;
-        std::replace(text.begin(), text.end(), '_', ' ');
+        std::ranges::replace(text, '_', ' ');
         return unit.empty() ? text : fmt::format("{} ({})", text, unit);
     }
 
@@ -99,9 +99,9 @@ std::pair<SweepColumn, SweepColumn> find_columns(const sweep::SweepDef& sweep, c
 
 /// "mass", or "rope_0__mass" if another key ends alike.
 std::string file_name(const sweep::SweepDef& sweep, const SweepColumn& column) {
-    const auto ends_alike = std::count_if(
-        sweep.vary.begin(), sweep.vary.end(),
-        [&](const sweep::VariedKey& varied) { return short_name(varied.key) == short_name(column.name); });
+    const auto ends_alike = std::ranges::count_if(sweep.vary, [&](const sweep::VariedKey& varied) {
+        return short_name(varied.key) == short_name(column.name);
+    });
     std::string name = ends_alike > 1 ? column.name : short_name(column.name);
     std::replace_if(
         name.begin(), name.end(), [](char c) { return c == '[' || c == ']' || c == '.'; }, '_');
@@ -115,8 +115,7 @@ std::vector<std::string> series_keys(const sweep::SweepDef& sweep, const SweepCo
         if (const auto* const choice = std::get_if<sweep::Choice>(&varied.values);
             choice && varied.key != x.name && choice->values.size() > 1)
             choices.emplace_back(choice->values.size(), varied.key);
-    std::stable_sort(choices.begin(), choices.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::ranges::stable_sort(choices, [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<std::string> keys;
     std::size_t series = 1;
     for (const auto& [count, key] : choices)
@@ -128,7 +127,7 @@ std::vector<std::string> series_keys(const sweep::SweepDef& sweep, const SweepCo
 std::string series_of(const std::vector<std::string>& keys, const sweep::SampleRow& row) {
     std::string text;
     for (const auto& [key, value] : row.parameters)
-        if (std::find(keys.begin(), keys.end(), key) != keys.end())
+        if (std::ranges::find(keys, key) != keys.end())
             text +=
                 fmt::format("{}{} = {}", text.empty() ? "" : ", ", short_name(key), sweep::value_text(value));
     return text;
@@ -161,8 +160,7 @@ SweepPoints read_points(const sweep::SweepDef& sweep, const std::string& folder,
         const auto y_value = y.value(row);
         if (!x_value || !y_value) return;
         const std::string name = series_of(keys, row);
-        const auto found = std::find_if(all.series.begin(), all.series.end(),
-                                        [&](const SweepPoints::Group& group) { return group.name == name; });
+        const auto found = std::ranges::find(all.series, name, &SweepPoints::Group::name);
         const std::size_t series = found - all.series.begin();
         if (found == all.series.end()) all.series.push_back({name, row.parameters});
         Point point{sweep::key_of(row.number), series, *x_value, *y_value, {}};
@@ -184,10 +182,10 @@ SweepPoints read_points(const sweep::SweepDef& sweep, const std::string& folder,
 bool is_angle_curve(const sweep::SweepDef& sweep, const SweepColumn& x,
                     const std::vector<std::string>& keys) {
     if (x.name != "angle_max_deg" && short_name(x.name) != "angle_deg") return false;
-    return std::all_of(sweep.vary.begin(), sweep.vary.end(), [&](const sweep::VariedKey& varied) {
+    return std::ranges::all_of(sweep.vary, [&](const sweep::VariedKey& varied) {
         const auto* const choice = std::get_if<sweep::Choice>(&varied.values);
-        return std::find(keys.begin(), keys.end(), varied.key) != keys.end() ||
-               short_name(varied.key) == "angle_deg" || (choice && choice->values.size() == 1);
+        return std::ranges::find(keys, varied.key) != keys.end() || short_name(varied.key) == "angle_deg" ||
+               (choice && choice->values.size() == 1);
     });
 }
 
@@ -213,7 +211,7 @@ report::Plot plot_of(const sweep::SweepDef& sweep, const SweepPoints& all, const
         }
         if (is_curve && !theory.points.empty()) {
             constexpr int kCurvePoints = 200;
-            const auto [least, most] = std::minmax_element(theory.points.begin(), theory.points.end());
+            const auto [least, most] = std::ranges::minmax_element(theory.points);
             const double first_deg = least->first;
             const double extent_deg = most->first - first_deg;
             const Scene scene = scene_of(sweep, parameters);

@@ -159,14 +159,13 @@ std::vector<std::string> variables_of_driver() {
         const std::string_view text(*variable);
         const auto begins = [&](std::string_view beginning) { return text.starts_with(beginning); };
         const bool has_value = text.find('=') + 1 < text.size();
-        const bool is_of_driver =
-            begins("LD_LIBRARY_PATH=")
-                ? replaces_driver(text.substr(text.find('=') + 1))
-                : std::any_of(kVariablesOfDrivers.begin(), kVariablesOfDrivers.end(), begins) &&
-                      std::none_of(kHarmlessVariables.begin(), kHarmlessVariables.end(), begins);
+        const bool is_of_driver = begins("LD_LIBRARY_PATH=")
+                                      ? replaces_driver(text.substr(text.find('=') + 1))
+                                      : std::ranges::any_of(kVariablesOfDrivers, begins) &&
+                                            std::ranges::none_of(kHarmlessVariables, begins);
         if (has_value && is_of_driver) set.emplace_back(text);
     }
-    std::sort(set.begin(), set.end());
+    std::ranges::sort(set);
     return set;
 }
 
@@ -282,8 +281,8 @@ std::string driver_variables() {
 
 bool has_unusual_variables() {
     const std::vector<std::string> set = variables_of_driver();
-    return std::any_of(set.begin(), set.end(), [](const std::string& variable) {
-        return std::find(kUsualVariables.begin(), kUsualVariables.end(), variable) == kUsualVariables.end();
+    return std::ranges::any_of(set, [](const std::string& variable) {
+        return std::ranges::find(kUsualVariables, variable) == kUsualVariables.end();
     });
 }
 

@@ -121,8 +121,8 @@ bool is_software_renderer(std::string renderer) {
     std::transform(renderer.begin(), renderer.end(), renderer.begin(),
                    [](unsigned char c) { return std::tolower(c); });
     const std::array<std::string_view, 4> names{"llvmpipe", "softpipe", "swrast", "software rasterizer"};
-    return std::any_of(names.begin(), names.end(),
-                       [&](std::string_view name) { return renderer.find(name) != std::string::npos; });
+    return std::ranges::any_of(
+        names, [&](std::string_view name) { return renderer.find(name) != std::string::npos; });
 }
 
 /// Displays that this library has initialised. EGL returns the same display to every caller for a platform,
@@ -136,8 +136,7 @@ std::vector<EGLDisplay>& own_displays() {
 /// True if the host application has initialised a display, which only then reports its version.
 bool is_of_host(EGLDisplay display) {
     const std::vector<EGLDisplay>& own = own_displays();
-    return std::find(own.begin(), own.end(), display) == own.end() &&
-           eglQueryString(display, EGL_VERSION) != nullptr;
+    return std::ranges::find(own, display) == own.end() && eglQueryString(display, EGL_VERSION) != nullptr;
 }
 
 /// True if llvmpipe draws without threads, which a forked child would lack.

@@ -33,7 +33,7 @@ std::vector<std::string> files_in(const std::string& folder, const std::string& 
         if (entry->path().extension() == ending && (entry->is_regular_file(none) || !entry->exists(none)))
             paths.push_back(entry->path().string());
     if (failure) fail_file("read", folder, failure.value());
-    std::sort(paths.begin(), paths.end());
+    std::ranges::sort(paths);
     return paths;
 }
 
@@ -124,7 +124,7 @@ std::string scene_in_name(const std::string& name) {
 }  // namespace
 
 bool Case::is_whole() const {
-    return std::all_of(pictures.begin(), pictures.end(), [](const Checked& one) { return one.selected; });
+    return std::ranges::all_of(pictures, &Checked::selected);
 }
 
 void select(const SuiteDef& def, std::vector<Case>& cases, std::vector<std::string>& stale,
@@ -245,7 +245,7 @@ std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid,
 void tell_passed_over(const std::vector<std::string>& files, const std::vector<std::string>& stale,
                       SuiteResult& result) {
     for (const std::string& file : files) {
-        const bool has_stale = std::any_of(stale.begin(), stale.end(), [&](const std::string& path) {
+        const bool has_stale = std::ranges::any_of(stale, [&](const std::string& path) {
             return scene_in_name(fs::path(path).filename().string()) == fs::path(file).stem();
         });
         if (has_stale)
@@ -289,9 +289,8 @@ std::vector<std::string> stale_ones(const SuiteDef& def, const std::vector<Case>
             for (const std::string& path : variants_of(references, picture.name)) used.insert(path);
     }
     std::error_code none;
-    const bool has_folder = std::any_of(def.paths.begin(), def.paths.end(), [&](const std::string& path) {
-        return fs::is_directory(path, none);
-    });
+    const bool has_folder =
+        std::ranges::any_of(def.paths, [&](const std::string& path) { return fs::is_directory(path, none); });
     std::vector<std::string> stale;
     for (const std::string& path : references) {
         if (used.contains(path)) continue;

@@ -74,8 +74,7 @@ Image amplified(const Image& a, const Image& b) {
 }
 
 std::string page_html(const SuiteResult& result) {
-    const std::int64_t failed = std::count_if(result.pictures.begin(), result.pictures.end(),
-                                              [](const Checked& picture) { return picture.failed(); });
+    const std::int64_t failed = std::ranges::count_if(result.pictures, &Checked::failed);
     std::string html = fmt::format(kPageHead, kPageStyle, kPicturesStyle);
     html += fmt::format("<h1>Golden pictures: {} failed</h1>\n<p>{}. Drawn by corda {}.</p>\n", failed,
                         result.totals(), version());

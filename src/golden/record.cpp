@@ -70,7 +70,7 @@ std::map<std::string, std::string> pixel_digest(const Scene& scene) {
     std::erase_if(all, [](const auto& entry) {
         constexpr std::array kOfPixels{"video.size", "video.fps", "video.shutter", "video.subframes"};
         return entry.first.starts_with("video.") &&
-               std::find(kOfPixels.begin(), kOfPixels.end(), entry.first) == kOfPixels.end();
+               std::ranges::find(kOfPixels, entry.first) == kOfPixels.end();
     });
     return all;
 }
@@ -85,7 +85,7 @@ std::string scene_change(const std::string& reference, const Scene& now,
         return "";
     }
     for (std::string& change : changes) {
-        const bool is_set = std::any_of(settings.begin(), settings.end(), [&](const Setting& setting) {
+        const bool is_set = std::ranges::any_of(settings, [&](const Setting& setting) {
             const std::string key = setting.substr(0, std::min(setting.find('='), setting.find(' ')));
             return change.starts_with(key) &&
                    std::string_view(" .[").find(change[key.size()]) != std::string_view::npos;

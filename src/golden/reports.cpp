@@ -74,13 +74,12 @@ std::string Checked::figures() const {
 }
 
 std::int64_t SuiteResult::count(Verdict verdict) const {
-    return std::count_if(pictures.begin(), pictures.end(), [&](const Checked& picture) {
-        return picture.verdict == verdict && !picture.changed;
-    });
+    return std::ranges::count_if(
+        pictures, [&](const Checked& picture) { return picture.verdict == verdict && !picture.changed; });
 }
 
 std::int64_t SuiteResult::changed() const {
-    return std::count_if(pictures.begin(), pictures.end(), [](const Checked& one) { return one.changed; });
+    return std::ranges::count_if(pictures, &Checked::changed);
 }
 
 std::string SuiteResult::totals() const {
@@ -140,8 +139,7 @@ std::string markdown(const SuiteResult& result) {
     std::vector<const Checked*> failed;
     for (const Checked& picture : result.pictures)
         if (picture.failed()) failed.push_back(&picture);
-    std::stable_sort(failed.begin(), failed.end(),
-                     [](const Checked* a, const Checked* b) { return a->group < b->group; });
+    std::ranges::stable_sort(failed, [](const Checked* a, const Checked* b) { return a->group < b->group; });
     int rows = 0;
     for (std::size_t i = 0; i < failed.size() && rows < kMaxRows; ++i, ++rows) {
         const Checked& picture = *failed[i];

@@ -168,7 +168,7 @@ class Runner {
         const double y_m = *camera.height_m / 2;
         const double x_m = y_m * video.width_px / video.height_px;
         const Vec2 center = *camera.center_m - job.film->system().origin_m;  // positions are relative to it
-        return std::any_of(job.made.begin(), job.made.end(), [&](const GoldenRecord& made) {
+        return std::ranges::any_of(job.made, [&](const GoldenRecord& made) {
             for (std::size_t i = 0; i + 1 < made.positions_m.size(); i += 2)
                 if (std::abs(made.positions_m[i] - center.x) > x_m ||
                     std::abs(made.positions_m[i + 1] - center.y) > y_m)
@@ -296,7 +296,7 @@ class Runner {
     void tell_since_when(const Job& job) const {
         std::vector<Checked>& pictures = job.scene->pictures;
         const auto moved = [](const Checked& picture) { return picture.cause.starts_with("positions"); };
-        if (std::none_of(pictures.begin(), pictures.end(), moved)) return;
+        if (std::ranges::none_of(pictures, moved)) return;
         std::size_t first = 0;
         const auto is_the_same = [&](std::size_t i) {
             if (!pictures[i].selected || pictures[i].verdict != Verdict::kPassed) return !moved(pictures[i]);
@@ -374,14 +374,11 @@ SuiteResult run(const SuiteDef& def) {
     select(def, cases, stale, invalid);
     tell_passed_over(passed_over, stale, result);
     require_files(def, cases);
-    std::erase_if(cases, [](const Case& one) {
-        return std::none_of(one.pictures.begin(), one.pictures.end(),
-                            [](const Checked& picture) { return picture.selected; });
-    });
+    std::erase_if(cases,
+                  [](const Case& one) { return std::ranges::none_of(one.pictures, &Checked::selected); });
     std::int64_t all = 0;
     for (const Case& one : cases) {
-        all += std::count_if(one.pictures.begin(), one.pictures.end(),
-                             [](const Checked& picture) { return picture.selected; });
+        all += std::ranges::count_if(one.pictures, &Checked::selected);
         if (def.replan && !one.is_whole())
             throw_usage("--replan changes all pictures of '{}'; give --only {}", one.path, one.scene.name);
     }

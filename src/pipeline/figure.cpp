@@ -104,7 +104,7 @@ Sheet sheet_of(const FigureDef& def) {
 
 void check(const Film& film, const FigureDef& def) {
     if (def.times_s.empty()) throw Error(ExitCode::kUsage, "a figure of no times; give one or more");
-    if (!std::is_sorted(def.times_s.begin(), def.times_s.end()))
+    if (!std::ranges::is_sorted(def.times_s))
         throw Error(ExitCode::kUsage, "the times of a figure do not increase; sort them");
     if (def.shutter != 0.0 && (def.columns > 0 || def.times_s.size() > 1))
         throw Error(ExitCode::kUsage, "a figure of several times with a shutter; blur stills, one by one");

@@ -231,7 +231,7 @@ std::vector<PlotData> LivePlotData::read(const std::vector<MethodDef>& methods, 
         return std::holds_alternative<RelaxationDef>(method);
     };
     for (std::size_t p = 0; p < plots.size(); ++p) {
-        if (plots[p] == LivePlot::kEnergy && std::any_of(methods.begin(), methods.end(), is_relaxation))
+        if (plots[p] == LivePlot::kEnergy && std::ranges::any_of(methods, is_relaxation))
             all[p].curves.pop_back();
         if (all[p].y.is_log) raise_zeros(subject.size_m, all[p]);
     }

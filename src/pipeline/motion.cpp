@@ -132,9 +132,8 @@ void Motion::keep(std::span<const double> times_s) {
 
 void Motion::fail_diverged(double time_s) const {
     const double last_s = recording_.size() == 0 ? 0.0 : timeline_.time_s(recording_.size() - 1);
-    const bool has_step = std::any_of(methods_.begin(), methods_.end(), [](const MethodDef& method) {
-        return !std::holds_alternative<ExactDef>(method);
-    });
+    const bool has_step = std::ranges::any_of(
+        methods_, [](const MethodDef& method) { return !std::holds_alternative<ExactDef>(method); });
     throw_error(ExitCode::kDiverged,
                 "the simulation diverged before t = {:.6g} s (last good state at {:.6g} s); {} may help{}",
                 time_s, last_s, divergence_advice(*system_), has_step ? ", or a smaller solver.step" : "");

@@ -54,7 +54,7 @@ double kinetic_j(const System& system, std::span<const double> vx_m_s, std::span
 bool has_velocity_along_bars(const System& body) {
     const MaterialDef& material = body.bodies.front().material;
     if (material.compliance_1_n > 0.0) return false;
-    return std::any_of(body.bars.begin(), body.bars.end(), [&](const Bar& bar) {
+    return std::ranges::any_of(body.bars, [&](const Bar& bar) {
         if (body.is_pinned(bar.a) && body.is_pinned(bar.b)) return false;
         const Vec2 along{body.x_m[bar.b] - body.x_m[bar.a], body.y_m[bar.b] - body.y_m[bar.a]};
         const Vec2 apart{body.vx_m_s[bar.b] - body.vx_m_s[bar.a], body.vy_m_s[bar.b] - body.vy_m_s[bar.a]};
@@ -86,9 +86,7 @@ std::optional<double> kinetic_after_j(const System& body, const WorldDef& world,
 void add_lost_velocity(const Scene& scene, const System& system, const Plan& plan,
                        std::vector<std::string>& notes) {
     const auto is_zero = [](double v) { return v == 0.0; };
-    if (std::all_of(system.vx_m_s.begin(), system.vx_m_s.end(), is_zero) &&
-        std::all_of(system.vy_m_s.begin(), system.vy_m_s.end(), is_zero))
-        return;
+    if (std::ranges::all_of(system.vx_m_s, is_zero) && std::ranges::all_of(system.vy_m_s, is_zero)) return;
     sim::for_each_body(system, [&](const System& body, std::size_t i) {
         if (!has_velocity_along_bars(body)) return;
         const double before_j = kinetic_j(body, body.vx_m_s, body.vy_m_s);
@@ -111,7 +109,7 @@ void add_pinned_velocity(const std::string& name, const std::vector<Vec2>& veloc
     const auto is_same = [&](Vec2 v) {
         return v.x == velocity_m_s.front().x && v.y == velocity_m_s.front().y;
     };
-    if (std::all_of(velocity_m_s.begin(), velocity_m_s.end(), is_same)) return;
+    if (std::ranges::all_of(velocity_m_s, is_same)) return;
     for (const std::uint32_t i : pinned) {
         const Vec2 v = velocity_m_s[i];
         if (v.x == 0.0 && v.y == 0.0) continue;
@@ -150,7 +148,7 @@ void add_rope_notes(const std::string& name, const RopeDef& rope, std::vector<st
     add_pulled_in(name, rope, notes);
     add_pinned_velocity(name, rope.velocity_m_s, rope.pinned, notes);
     const auto last = static_cast<std::uint32_t>(rope.points_m.size() - 1);
-    const bool is_last_pinned = std::find(rope.pinned.begin(), rope.pinned.end(), last) != rope.pinned.end();
+    const bool is_last_pinned = std::ranges::find(rope.pinned, last) != rope.pinned.end();
     if (rope.payload_kg > 0.0 && is_last_pinned) {
         notes.push_back(fmt::format(
             "{}: payload {} kg changes nothing, because the last particle is pinned; remove payload, or -1 "

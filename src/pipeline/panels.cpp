@@ -66,8 +66,8 @@ VideoDef panels_video(std::span<const Scene> scenes, int columns) {
 namespace pipeline {
 
 bool are_opaque(std::span<const Scene> scenes) {
-    return std::all_of(scenes.begin(), scenes.end(),
-                       [](const Scene& scene) { return view::look_of(scene.style).ground.is_opaque(); });
+    return std::ranges::all_of(
+        scenes, [](const Scene& scene) { return view::look_of(scene.style).ground.is_opaque(); });
 }
 
 Panels::Panels(std::span<Film> given, int count) : films(given), columns(count) {
@@ -76,14 +76,14 @@ Panels::Panels(std::span<Film> given, int count) : films(given), columns(count) 
 }
 
 bool Panels::can_draw_in_any_order(std::int64_t end) const {
-    return std::all_of(films.begin(), films.end(), [end](Film& film) {
+    return std::ranges::all_of(films, [end](Film& film) {
         return FilmRenderer::can_draw_in_any_order(film, std::min(end, film.frame_count()));
     });
 }
 
 bool Panels::have_empty(std::int64_t k) const {
-    return std::any_of(films.begin(), films.end(),
-                       [k](Film& film) { return FilmRenderer::is_empty(film, shown_s(film, k)); });
+    return std::ranges::any_of(films,
+                               [k](Film& film) { return FilmRenderer::is_empty(film, shown_s(film, k)); });
 }
 
 PanelRenderer::PanelRenderer(const Panels& panels) : panels_(&panels) {
@@ -116,8 +116,7 @@ const Image& PanelRenderer::image() const {
 }
 
 bool PanelRenderer::shows_nothing() const {
-    return std::any_of(renderers_.begin(), renderers_.end(),
-                       [](const FilmRenderer& renderer) { return renderer.shows_nothing(); });
+    return std::ranges::any_of(renderers_, &FilmRenderer::shows_nothing);
 }
 
 }  // namespace pipeline

@@ -133,8 +133,7 @@ std::string nets_term(const Scene& scene) {
     std::size_t all = 0;
     for (const NetDef& net : scene.nets) {
         all += net.bars.size();
-        real += static_cast<std::size_t>(
-            std::count_if(net.bars.begin(), net.bars.end(), [](const NetBar& bar) { return bar.is_real; }));
+        real += static_cast<std::size_t>(std::ranges::count_if(net.bars, &NetBar::is_real));
     }
     return fmt::format("nets: {}, of {} bars and {} imaginary ones", scene.nets.size(), real, all - real);
 }
@@ -245,7 +244,7 @@ std::string method_names(const Plan& plan) {
     std::vector<std::string_view> names;
     for (const BodyPlan& body : plan.bodies) {
         const std::string_view name = method_name(body.method);
-        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+        if (std::ranges::find(names, name) == names.end()) names.push_back(name);
     }
     return fmt::format("{}", fmt::join(names, ", "));
 }
@@ -301,8 +300,7 @@ std::vector<std::string> modelled_terms(const Scene& scene, const Plan& plan) {
     if (materials.slack) terms.emplace_back("strings: links that pull and never push");
     if (!materials.bending_n_m2.empty())
         terms.push_back(fmt::format("bending stiffness of {} N m2", materials.bending_n_m2.text()));
-    const auto closed = std::count_if(scene.ropes.begin(), scene.ropes.end(),
-                                      [](const RopeDef& rope) { return rope.closed; });
+    const auto closed = std::ranges::count_if(scene.ropes, &RopeDef::closed);
     if (closed > 0) terms.push_back(fmt::format("closed ropes: {}", closed));
     if (!scene.nets.empty()) terms.push_back(nets_term(scene));
     return terms;
@@ -331,9 +329,8 @@ Scene frozen_scene(Film& film) {
     Scene scene = film.scene();
     std::vector<MethodGroup> groups = groups_of(film.plan());
     // [solver] is for the largest group.
-    std::stable_sort(groups.begin(), groups.end(), [](const MethodGroup& a, const MethodGroup& b) {
-        return a.bodies.size() > b.bodies.size();
-    });
+    std::ranges::stable_sort(
+        groups, [](const MethodGroup& a, const MethodGroup& b) { return a.bodies.size() > b.bodies.size(); });
     scene.solver = solver_of(groups.front().method);
     scene.body_solvers.clear();
     for (std::size_t i = 1; i < groups.size(); ++i) {

@@ -135,8 +135,8 @@ PictureOrigin picture_of(const Json& json) {
 /// Names of files are made of it.
 bool is_sound_name(const std::string& name) {
     return !name.empty() && name.size() <= kMaxName && name != "." && name != ".." &&
-           std::none_of(name.begin(), name.end(),
-                        [](char c) { return c == '/' || static_cast<unsigned char>(c) < 0x20; });
+           std::ranges::none_of(name,
+                                [](char c) { return c == '/' || static_cast<unsigned char>(c) < 0x20; });
 }
 
 Provenance parsed(const Json& json) {

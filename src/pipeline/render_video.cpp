@@ -245,8 +245,7 @@ void write_frames(const Panels& panels, const media::CheckedVideo& video, const 
     const CancelScope progress([&] { report_progress(on_progress, done, total); });
     for (std::int64_t k = video.first; k < video.end; ++k) {
         check_cancelled();
-        const bool is_lacking =
-            std::binary_search(lacking.begin(), lacking.end(), k / writer.manifest().per_chunk);
+        const bool is_lacking = std::ranges::binary_search(lacking, k / writer.manifest().per_chunk);
         if (!is_lacking && !video.shard && panels.have_empty(k)) note_empty(panels.time_s(k), result);
         if (!is_lacking || is_made) continue;
         if (!renderer) renderer.emplace(panels);

@@ -47,7 +47,7 @@ std::vector<TrackedParticle> tracked_particles(const System& system, std::size_t
         const Body& body = system.bodies[b];
         const std::vector<std::size_t> free = particles_of(system, body, false);
         if (free.empty()) continue;
-        const auto end = std::find_if(ends.begin(), ends.end(), [&](std::size_t i) {
+        const auto end = std::ranges::find_if(ends, [&](std::size_t i) {
             return i >= body.first_particle && i < body.first_particle + body.particle_count;
         });
         TrackedParticle& tracked = all.emplace_back();
@@ -86,9 +86,8 @@ std::size_t tip_of(const System& system) {
 }
 
 std::size_t moving_count(const System& system) {
-    return static_cast<std::size_t>(
-        std::count_if(system.bodies.begin(), system.bodies.end(),
-                      [&](const Body& body) { return !particles_of(system, body, false).empty(); }));
+    return static_cast<std::size_t>(std::ranges::count_if(
+        system.bodies, [&](const Body& body) { return !particles_of(system, body, false).empty(); }));
 }
 
 std::string particle_text(const System& system, const TrackedParticle& particle) {
@@ -118,8 +117,7 @@ std::string particles_text(const System& system, const std::vector<TrackedPartic
         text =
             fmt::format("the free end of {} (particle {})", body_name(system, ends.front()), numbers.front());
     } else {
-        const bool are_same =
-            std::count(numbers.begin(), numbers.end(), numbers.front()) == std::ssize(numbers);
+        const bool are_same = std::ranges::count(numbers, numbers.front()) == std::ssize(numbers);
         text = fmt::format("the free ends of {} ({})", bodies_text(system, ends),
                            are_same ? fmt::format("particle {} of each", numbers.front())
                                     : fmt::format("particles {}", fmt::join(numbers, ", ")));

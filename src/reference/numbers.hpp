@@ -105,11 +105,11 @@ inline constexpr std::array<ReleasedChain, 15> kReleasedChains{{
 
 /// The tip in the row of R5 that has these numbers and equal masses. Does not compile if there is none.
 [[nodiscard]] consteval Vec2 released_tip_m(int links, double angle_deg, double time_s) {
-    return std::find_if(kReleasedChains.begin(), kReleasedChains.end(),
-                        [&](const ReleasedChain& row) {
-                            return row.links == links && row.angle_deg == angle_deg && row.time_s == time_s &&
-                                   row.tip_mass_kg == 1.0;
-                        })
+    return std::ranges::find_if(kReleasedChains,
+                                [&](const ReleasedChain& row) {
+                                    return row.links == links && row.angle_deg == angle_deg &&
+                                           row.time_s == time_s && row.tip_mass_kg == 1.0;
+                                })
         ->tip_m;
 }
 

@@ -50,7 +50,7 @@ bool is_zero(const std::uint8_t* coverage, std::uint16_t each) {
     std::array<std::uint64_t, 2 * kPixels / sizeof(std::uint64_t)> words{};
     std::memcpy(words.data(), coverage, sizeof(words));
     const std::uint64_t bits = each * std::uint64_t{0x0001'0001'0001'0001};
-    return std::all_of(words.begin(), words.end(), [bits](std::uint64_t word) { return (word & bits) == 0; });
+    return std::ranges::all_of(words, [bits](std::uint64_t word) { return (word & bits) == 0; });
 }
 
 /// The alphas of a mask with a stride of two bytes, repeated for all channels of a pixel.

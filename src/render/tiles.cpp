@@ -85,7 +85,7 @@ void Tiles::plan(const view::DrawList& list) {
 
 void Tiles::add_runs(const view::DrawList& list, Color color) {
     tiles_ += touched_.size();
-    std::sort(touched_.begin(), touched_.end());
+    std::ranges::sort(touched_);
     std::size_t last = 0;
     for (const std::size_t tile : touched_) {
         const PixelRect rect = tile_rect(tile, list.width, list.height);

@@ -21,7 +21,7 @@ void append(std::vector<Stroke>& strokes, const view::Capsule& capsule, const St
     const view::PixelPoint from{capsule.ax, capsule.ay};
     const view::PixelPoint to{from.x + static_cast<double>(capsule.ux) * capsule.length,
                               from.y + static_cast<double>(capsule.uy) * capsule.length};
-    auto stroke = std::find_if(strokes.begin(), strokes.end(), [&](const Stroke& other) {
+    auto stroke = std::ranges::find_if(strokes, [&](const Stroke& other) {
         return other.width_px == look.width_px && other.color == look.color &&
                other.is_blunt == look.is_blunt;
     });

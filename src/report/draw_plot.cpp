@@ -130,8 +130,8 @@ class Drawing {
                 if (series.form == Series::Form::kPoints) look.line_em = 0.0;
             }
             looks_.push_back(look);
-            const bool is_drawn = std::any_of(series.points.begin(), series.points.end(),
-                                              [&](const auto& point) { return is_drawable(plot_, point); });
+            const bool is_drawn = std::ranges::any_of(
+                series.points, [&](const auto& point) { return is_drawable(plot_, point); });
             if (!is_drawn || look.name.empty() || (series.is_context && has_context)) continue;
             has_context |= series.is_context;
             key_.push_back(look);

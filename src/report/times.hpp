@@ -9,7 +9,7 @@ namespace corda::report {
 /// How long the repeats of something took.
 class Times {
   public:
-    void add(double time) { times_.insert(std::upper_bound(times_.begin(), times_.end(), time), time); }
+    void add(double time) { times_.insert(std::ranges::upper_bound(times_, time), time); }
 
     [[nodiscard]] bool empty() const { return times_.empty(); }
     /// The middle one, or the mean of the two in the middle; 0 of none.

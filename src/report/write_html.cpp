@@ -16,8 +16,7 @@ constexpr std::size_t kLongText = 40;
 /// Whether a column has numbers and no texts.
 bool is_numeric(const Table& table, std::size_t column) {
     const auto holds = [&table, column](auto predicate) {
-        return std::any_of(table.rows.begin(), table.rows.end(),
-                           [&](const auto& row) { return predicate(row[column]); });
+        return std::ranges::any_of(table.rows, [&](const auto& row) { return predicate(row[column]); });
     };
     return holds([](const Cell& cell) { return std::holds_alternative<double>(cell); }) &&
            !holds([](const Cell& cell) { return std::holds_alternative<std::string>(cell); });

@@ -19,7 +19,7 @@ namespace {
 /// For a key that another table has: `; it is a key of video`.
 std::string other_home(std::string_view name) {
     const auto& keys = all_keys();
-    const auto key = std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == name; });
+    const auto key = std::ranges::find(keys, name, &Key::name);
     if (key == keys.end()) return "";
     return fmt::format("; it is a key of {}", key->section.empty() ? "the top level" : key->section);
 }
@@ -57,7 +57,7 @@ class ValueChecker {
     [[nodiscard]] bool is_one_choice(const toml::node& node) const {
         const auto& choices = key_->type.choices;
         return node.is_string() && takes(kList) &&
-               std::find(choices.begin(), choices.end(), node.as_string()->get()) != choices.end();
+               std::ranges::find(choices, node.as_string()->get()) != choices.end();
     }
 
     bool fail_for_one(const toml::node& node, const std::string& path) const {
@@ -138,7 +138,7 @@ class ValueChecker {
 
     bool check_word(const std::vector<std::string_view>& words, const std::string& text,
                     const toml::node& node, const std::string& path) const {
-        if (std::find(words.begin(), words.end(), text) != words.end()) return true;
+        if (std::ranges::find(words, text) != words.end()) return true;
         if (node.is_number()) return fail(node, path, fmt::format("{} is not allowed", text));
         const auto meant = nearest(text, words);
         if (!meant) return fail(node, path, fmt::format("\"{}\" is unknown", excerpt(text)));
@@ -235,7 +235,7 @@ class TableChecker {
     /// Refuses keys of other methods, whatever their values. Without a valid method no key is foreign.
     void refuse_foreign_keys(toml::table& solver, const Key& method_key, const std::string& path) const {
         const auto has = [](const std::vector<std::string_view>& words, std::string_view word) {
-            return std::find(words.begin(), words.end(), word) != words.end();
+            return std::ranges::find(words, word) != words.end();
         };
         const bool is_default = !solver.contains("method") && !method_key.binding.initial.required;
         const std::string method =

@@ -28,7 +28,7 @@ toml::table turned_table(const toml::table& rope, const RopeDef& def, double ang
     table.erase("copies");
     table.erase("label");
     table.insert_or_assign("merged", true);
-    const std::size_t pin = def.pinned.empty() ? 0 : *std::min_element(def.pinned.begin(), def.pinned.end());
+    const std::size_t pin = def.pinned.empty() ? 0 : *std::ranges::min_element(def.pinned);
     const Direction by = direction_of(angle_deg);
     if (def.velocity_m_s != std::vector<Vec2>(def.velocity_m_s.size())) {
         toml::array velocities;

@@ -36,7 +36,7 @@ std::vector<DefProblem> problems_of(const OverlayTextDef& text) {
 std::vector<DefProblem> problems_of(const OverlayDef& overlay, const std::vector<RopeDef>& ropes) {
     const auto has_one_pin = [](const RopeDef& rope) { return rope.pinned.size() == 1 && !rope.closed; };
     const auto moves = [](const RopeDef& rope) { return rope.pinned.size() < rope.points_m.size(); };
-    const bool has_angle = std::any_of(ropes.begin(), ropes.end(), has_one_pin);
+    const bool has_angle = std::ranges::any_of(ropes, has_one_pin);
     const std::vector<LivePlot>& plots = overlay.plots;
     std::vector<DefProblem> problems;
     for (std::size_t i = 0; i < plots.size(); ++i) {

@@ -101,10 +101,9 @@ void refuse_double_bars(const Value& list, const std::vector<NetBar>& bars) {
     pairs.reserve(bars.size());
     for (const NetBar& bar : bars)
         pairs.push_back({std::min(bar.a, bar.b), std::max(bar.a, bar.b), pairs.size()});
-    std::stable_sort(pairs.begin(), pairs.end(),
-                     [](const Pair& a, const Pair& b) { return a.key() < b.key(); });
-    const auto same = std::adjacent_find(pairs.begin(), pairs.end(),
-                                         [](const Pair& a, const Pair& b) { return a.key() == b.key(); });
+    std::ranges::stable_sort(pairs, {}, &Pair::key);
+    const auto same =
+        std::ranges::adjacent_find(pairs, [](const Pair& a, const Pair& b) { return a.key() == b.key(); });
     if (same == pairs.end()) return;
     list.at((same + 1)->place)
         .add_problem(fmt::format("particles {} and {} are joined already, by bars[{}]; remove one", same->low,

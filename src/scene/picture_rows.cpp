@@ -19,8 +19,8 @@ Binding size_field() {
                 def.height_px = value.at(1).as<int>();
                 return;
             }
-            const auto named = std::find_if(
-                kNamedSizes.begin(), kNamedSizes.end(),
+            const auto named = std::ranges::find_if(
+                kNamedSizes,
                 [name = value.as<std::string_view>()](const NamedSize& size) { return size.name == name; });
             def.width_px = named->width_px;
             def.height_px = named->height_px;

@@ -85,8 +85,7 @@ void Problems::add(const std::string& message) {
 void Problems::throw_if_any() const {
     if (problems_.empty()) return;
     std::vector<Problem> sorted = problems_;
-    std::stable_sort(sorted.begin(), sorted.end(),
-                     [](const Problem& a, const Problem& b) { return a.place() < b.place(); });
+    std::ranges::stable_sort(sorted, {}, &Problem::place);
     std::string text;
     for (std::size_t i = 0; i < std::min(sorted.size(), kMaxShown); ++i)
         text += (i == 0 ? "" : "\n") + sorted[i].message;

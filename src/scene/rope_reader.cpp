@@ -98,8 +98,7 @@ bool has_one_shape(const TableReader& rope) {
                  [&](std::string_view shape) { return rope.is_given(shape); });
     if (given.empty())
         rope.add_problem(fmt::format("the rope has no shape; give one of: {}", fmt::join(kShapes, ", ")));
-    const auto here =
-        std::count_if(given.begin(), given.end(), [&](std::string_view shape) { return rope.has(shape); });
+    const auto here = std::ranges::count_if(given, [&](std::string_view shape) { return rope.has(shape); });
     if (here > 1)  // a misspelt key has a problem already
         rope.add_problem(fmt::format("the rope has {} shapes ({}); keep one of them", given.size(),
                                      fmt::join(given, ", ")));

@@ -51,10 +51,9 @@ Table table_of(std::string section, std::string path, std::initializer_list<Part
                std::initializer_list<std::string_view> skipped = {}) {
     Table table{std::move(section), std::move(path), {}, {}};
     for (const Key& key : keys_of(table.section)) {
-        if (std::find(skipped.begin(), skipped.end(), key.name) != skipped.end()) continue;
+        if (std::ranges::find(skipped, key.name) != skipped.end()) continue;
         for (const Field& field : key.binding.fields) {
-            const auto part = std::find_if(parts.begin(), parts.end(),
-                                           [&](const Part& one) { return one.type == field.def; });
+            const auto part = std::ranges::find(parts, field.def, &Part::type);
             if (part == parts.end()) continue;
             if (std::string toml = field.toml(key, part->def); !toml.empty())
                 table.values.emplace_back(key.name, std::move(toml));

@@ -87,8 +87,7 @@ Response Review::apply(const std::vector<std::string>& names) {
     def.new_folder.clear();
     def.only.clear();
     for (const Checked& picture : pictures_)
-        if (!picture.drawn_path.empty() &&
-            std::find(names.begin(), names.end(), picture.name) != names.end() &&
+        if (!picture.drawn_path.empty() && std::ranges::find(names, picture.name) != names.end() &&
             !accepted_.contains(picture.name))
             def.only.push_back(picture.name);
     if (def.only.empty())

@@ -26,7 +26,7 @@ class Collector {
   public:
     std::vector<Found> collect(const toml::table& document) {
         add_table(document, "", "");
-        std::sort(found_.begin(), found_.end(), [](const Found& a, const Found& b) {
+        std::ranges::sort(found_, [](const Found& a, const Found& b) {
             const auto place = [](const Found& its) {
                 return std::pair(its.region.begin.line, its.region.begin.column);
             };
@@ -117,10 +117,9 @@ std::vector<Setting> settings_of(const NumberChanges& changes, const std::vector
 std::string with_changes(std::string text, const std::string& name, const NumberChanges& changes) {
     std::vector<Found> all = Collector().collect(scene::parse_document(text, name));
     for (const auto& change : changes)
-        if (std::none_of(all.begin(), all.end(),
-                         [&](const Found& its) { return its.number.key == change.first; }))
+        if (std::ranges::none_of(all, [&](const Found& its) { return its.number.key == change.first; }))
             throw_usage("{} has no number {} any more", name, printable(change.first));
-    std::reverse(all.begin(), all.end());  // so that a change does not move the places of the others
+    std::ranges::reverse(all);  // so that a change does not move the places of the others
     for (const auto& [number, region] : all) {
         const auto change = changes.find(number.key);
         if (change == changes.end()) continue;

@@ -77,8 +77,7 @@ std::string name_of(std::string_view host) {
 }
 
 bool is_among(std::string_view name, std::span<const std::string> hosts) {
-    return std::any_of(hosts.begin(), hosts.end(),
-                       [&](const std::string& host) { return name_of(host) == name; });
+    return std::ranges::any_of(hosts, [&](const std::string& host) { return name_of(host) == name; });
 }
 
 /// Calls `use`, whose exceptions must not reach the C functions of libmicrohttpd.

@@ -212,8 +212,8 @@ void Watch::load() {
         text_ = text;
         numbers_ = numbers;
         std::erase_if(changes_, [&](const auto& change) {  // of a number that the file has no more
-            return std::none_of(numbers.begin(), numbers.end(),
-                                [&](const SceneNumber& number) { return number.key == change.first; });
+            return std::ranges::none_of(
+                numbers, [&](const SceneNumber& number) { return number.key == change.first; });
         });
     }
     Scene scene = parse_scene(text, def_.path, settings, {"slider", settings_of(changes, numbers)});
@@ -335,8 +335,8 @@ std::optional<std::int64_t> Watch::next_frame() const {
     while (pictures_.contains((playhead_ + ahead) % frames_)) ++ahead;
     const auto is_farther = [&](const auto& entry) { return distance(entry.first) > ahead; };
     // Half of the room, so that a frame that is drawn ahead is not itself the first one to go.
-    const bool has_room = picture_bytes_ < def_.picture_bytes / 2 ||
-                          std::any_of(pictures_.begin(), pictures_.end(), is_farther);
+    const bool has_room =
+        picture_bytes_ < def_.picture_bytes / 2 || std::ranges::any_of(pictures_, is_farther);
     return has_room ? std::optional((playhead_ + ahead) % frames_) : std::nullopt;
 }
 
@@ -346,9 +346,8 @@ void Watch::keep(std::int64_t k, Picture picture) {
     // One that a request waits for stays until it is taken.
     const auto rank = [&](std::int64_t frame) { return is_awaited(frame) ? -1 : distance(frame); };
     while (picture_bytes_ > def_.picture_bytes && pictures_.size() > 1) {
-        const auto last =
-            std::max_element(pictures_.begin(), pictures_.end(),
-                             [&](const auto& a, const auto& b) { return rank(a.first) < rank(b.first); });
+        const auto last = std::ranges::max_element(
+            pictures_, [&](const auto& a, const auto& b) { return rank(a.first) < rank(b.first); });
         if (is_awaited(last->first)) break;
         picture_bytes_ -= last->second.png.size();
         pictures_.erase(last);
@@ -436,9 +435,8 @@ Response Watch::curves(std::int64_t film) {
 Response Watch::change_number(const Json& body) {
     {
         const std::lock_guard lock(mutex_);
-        const auto number = std::find_if(numbers_.begin(), numbers_.end(), [&](const SceneNumber& its) {
-            return body.contains("key") && body["key"] == its.key;
-        });
+        const auto number = std::ranges::find_if(
+            numbers_, [&](const SceneNumber& its) { return body.contains("key") && body["key"] == its.key; });
         const Json value = body.value("value", Json());
         if (number == numbers_.end()) return text_response(400, "the scene has no such number\n");
         if (value.is_number() && value.get<double>() != number->value)

@@ -21,8 +21,7 @@ constexpr double kMaxDistanceMetres = 1e12;
 
 bool is_sound(const State& state) {
     const auto near = [](double x_m) { return std::abs(x_m) < kMaxDistanceMetres; };  // false for NaN
-    return std::all_of(state.x_m.begin(), state.x_m.end(), near) &&
-           std::all_of(state.y_m.begin(), state.y_m.end(), near);
+    return std::ranges::all_of(state.x_m, near) && std::ranges::all_of(state.y_m, near);
 }
 
 double max_strain(const System& system, const State& state) {

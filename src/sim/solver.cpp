@@ -88,8 +88,7 @@ double sum_of_scales_j(const std::vector<Part>& parts) {
 }
 
 bool all_conserve_energy(const std::vector<Part>& parts) {
-    return std::all_of(parts.begin(), parts.end(),
-                       [](const Part& part) { return part.solver->conserves_energy(); });
+    return std::ranges::all_of(parts, [](const Part& part) { return part.solver->conserves_energy(); });
 }
 
 void put(const std::vector<double>& values, std::size_t first, std::vector<double>& all) {
@@ -165,8 +164,7 @@ double BodySolvers::energy_j() const {
 }
 
 bool BodySolvers::has_branched() const {
-    return std::any_of(parts_.begin(), parts_.end(),
-                       [](const Part& part) { return part.solver->has_branched(); });
+    return std::ranges::any_of(parts_, [](const Part& part) { return part.solver->has_branched(); });
 }
 
 void BodySolvers::velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) {
@@ -209,7 +207,7 @@ std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces,
                                           " bodies of the system; give one each, or one for all");
     }
     // `relaxation` fills the lanes of a processor with several small bodies.
-    const bool relaxes_all = std::all_of(methods.begin(), methods.end(), [&](const MethodDef& method) {
+    const bool relaxes_all = std::ranges::all_of(methods, [&](const MethodDef& method) {
         return std::holds_alternative<RelaxationDef>(method) && method == methods.front();
     });
     if (count == 1 || relaxes_all) return make_solver_of(system, forces, methods.front(), frame_interval_s);

@@ -34,15 +34,13 @@ void check_body(const BodyDef& def, const std::string& what) {
     const std::size_t count = def.points_m.size();
     require(count >= 2, what, "points_m has fewer than 2 points");
     require(is_finite(def.origin_m), what, "origin_m is not finite");
-    require(std::all_of(def.points_m.begin(), def.points_m.end(), is_finite), what,
-            "points_m has a point that is not finite");
+    require(std::ranges::all_of(def.points_m, is_finite), what, "points_m has a point that is not finite");
     require(def.mass_kg.empty() || def.mass_kg.size() == count, what,
             "mass_kg needs one value per particle, or none");
-    require(std::all_of(def.mass_kg.begin(), def.mass_kg.end(), is_positive), what,
-            "mass_kg has a value that is not > 0");
+    require(std::ranges::all_of(def.mass_kg, is_positive), what, "mass_kg has a value that is not > 0");
     require(def.velocity_m_s.empty() || def.velocity_m_s.size() == count, what,
             "velocity_m_s needs one value per particle, or none");
-    require(std::all_of(def.velocity_m_s.begin(), def.velocity_m_s.end(), is_finite), what,
+    require(std::ranges::all_of(def.velocity_m_s, is_finite), what,
             "velocity_m_s has a value that is not finite");
     for (const std::uint32_t index : def.pinned)
         if (index >= count)
@@ -61,8 +59,7 @@ void check(const RopeDef& rope, const std::string& what) {
     const std::size_t links = rope.closed ? count : count - 1;
     require(rope.rest_m.empty() || rope.rest_m.size() == links, what,
             "rest_m needs one value per link, or none");
-    require(std::all_of(rope.rest_m.begin(), rope.rest_m.end(), is_positive), what,
-            "rest_m has a value that is not > 0");
+    require(std::ranges::all_of(rope.rest_m, is_positive), what, "rest_m has a value that is not > 0");
 }
 
 void check(const NetDef& net, const std::string& what) {
@@ -214,7 +211,7 @@ System alone(const System& system, const Body& body) {
 LinkRange links_between_pins(const RopeDef& rope) {
     if (rope.closed) return {0, rope.points_m.size()};
     if (rope.pinned.empty()) return {};
-    const auto [first, last] = std::minmax_element(rope.pinned.begin(), rope.pinned.end());
+    const auto [first, last] = std::ranges::minmax_element(rope.pinned);
     return {*first, *last};
 }
 
@@ -281,15 +278,14 @@ double mass_ratio(const System& system, const Body& body) {
 }
 
 std::size_t rope_count(const System& system) {
-    const auto first_net = std::partition_point(system.bodies.begin(), system.bodies.end(),
-                                                [](const Body& body) { return !body.is_net; });
+    const auto first_net =
+        std::ranges::partition_point(system.bodies, [](const Body& body) { return !body.is_net; });
     return static_cast<std::size_t>(first_net - system.bodies.begin());
 }
 
 std::size_t body_of(const System& system, std::size_t particle) {
-    const auto after =
-        std::partition_point(system.bodies.begin(), system.bodies.end(),
-                             [particle](const Body& body) { return body.first_particle <= particle; });
+    const auto after = std::ranges::partition_point(
+        system.bodies, [particle](const Body& body) { return body.first_particle <= particle; });
     return static_cast<std::size_t>(after - system.bodies.begin()) - 1;
 }
 
@@ -305,7 +301,7 @@ std::vector<std::string> body_keys(const System& system) {
     std::map<std::string, int> repeats;
     for (std::size_t b = 0; b < system.bodies.size(); ++b) {
         std::string name = body_name(system, b);
-        std::replace(name.begin(), name.end(), ' ', '_');
+        std::ranges::replace(name, ' ', '_');
         std::string key = name;
         while (!taken.insert(key).second) key = name + "_" + std::to_string(++repeats[name] + 1);
         keys.push_back(key);

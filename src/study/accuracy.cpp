@@ -61,7 +61,7 @@ report::Table short_table(const std::vector<Measured>& cases) {
     for (const auto& [given, rows] : cases) {
         const report::Cell name = fmt::format("{} {} ({})", given.reference, given.subject, given.quantity);
         for (const AccuracyRow& row : rows) {
-            const auto same = std::find_if(table.rows.begin(), table.rows.end(), [&](const auto& cells) {
+            const auto same = std::ranges::find_if(table.rows, [&](const auto& cells) {
                 return cells[0] == name && cells[1] == report::Cell(row.method);
             });
             if (!row.failure.empty()) {

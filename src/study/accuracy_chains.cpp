@@ -100,7 +100,7 @@ void add_r6(std::vector<AccuracyCase>& cases) {
             const double half_weight = 0.5 * (row.links - 1);
             const double tension = std::sqrt(std::max(0.0, pull * pull - half_weight * half_weight));
             const auto& y_m = probe.state().y_m;
-            const double lowest_m = *std::min_element(y_m.begin(), y_m.end());
+            const double lowest_m = *std::ranges::min_element(y_m);
             return std::max(std::abs(tension / row.tension_over_weight - 1.0),
                             std::abs(lowest_m - row.lowest_m));
         };

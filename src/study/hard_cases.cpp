@@ -33,8 +33,8 @@ std::vector<report::Cell> row_of(const HardCase& hard, bool is_quick) {
 
 report::Chapter chapter_of(const report::Table& table) {
     const auto count = [&](const char* result) {
-        return std::count_if(table.rows.begin(), table.rows.end(),
-                             [&](const auto& row) { return row[4] == report::Cell(result); });
+        return std::ranges::count_if(table.rows,
+                                     [&](const auto& row) { return row[4] == report::Cell(result); });
     };
     report::Chapter chapter;
     chapter.title = "Hard cases";

@@ -176,8 +176,8 @@ void add_inverted(std::vector<HardCase>& cases) {
     constexpr std::array<std::pair<double, double>, 3> kBoundsM{
         {{179.0, 1e-11}, {179.9, 1e-10}, {179.99, 1e-9}}};
     for (const auto& [angle_deg, bound_m] : kBoundsM) {
-        const auto row = std::find_if(reference::kSwingPeriods.begin(), reference::kSwingPeriods.end(),
-                                      [angle = angle_deg](const auto& r) { return r.angle_deg == angle; });
+        const auto row = std::ranges::find_if(
+            reference::kSwingPeriods, [angle = angle_deg](const auto& r) { return r.angle_deg == angle; });
         const auto add = [&, bound = bound_m](const char* name, const MethodDef& method) {
             cases.push_back({fmt::format("pendulum from {:g} deg", row->angle_deg), name,
                              fmt::format("within {} m of the lowest point after R2's quarter period",

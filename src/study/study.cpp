@@ -31,8 +31,7 @@ constexpr std::array<ChapterKind, 4> kChapters{{{"speed", speed_work, true},
 
 void check_chapters(const StudyDef& def) {
     for (const std::string& name : def.chapters) {
-        const auto kind = std::find_if(kChapters.begin(), kChapters.end(),
-                                       [&](const ChapterKind& one) { return one.name == name; });
+        const auto kind = std::ranges::find(kChapters, name, &ChapterKind::name);
         if (kind == kChapters.end())
             throw_usage("there is no chapter \"{}\"; known are {}", name, fmt::join(chapter_names(), ", "));
         if (def.scene && !kind->takes_a_scene) {
@@ -44,7 +43,7 @@ void check_chapters(const StudyDef& def) {
 
 bool is_wanted(const ChapterKind& kind, const StudyDef& def) {
     if (def.chapters.empty()) return kind.takes_a_scene || !def.scene;
-    return std::find(def.chapters.begin(), def.chapters.end(), kind.name) != def.chapters.end();
+    return std::ranges::find(def.chapters, kind.name) != def.chapters.end();
 }
 
 std::string compiler() {

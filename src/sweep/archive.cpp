@@ -35,7 +35,7 @@ std::string npy_head(const Array& array) {
 
 std::string little_endian(std::uint64_t value, std::size_t bytes) {
     std::string text = media::big_endian(value, bytes);
-    std::reverse(text.begin(), text.end());
+    std::ranges::reverse(text);
     return text;
 }
 

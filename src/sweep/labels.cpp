@@ -77,8 +77,7 @@ std::span<const Label> all_labels() {
 }
 
 const Label* find_label(std::string_view name) {
-    const auto found =
-        std::find_if(kLabels.begin(), kLabels.end(), [&](const Label& label) { return label.name == name; });
+    const auto found = std::ranges::find(kLabels, name, &Label::name);
     return found == kLabels.end() ? nullptr : &*found;
 }
 

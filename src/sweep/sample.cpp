@@ -24,7 +24,7 @@ Json info_of(Film& film, const SweepDef& sweep, const Sample& sample) {
     for (const auto& [key, value] : sample.parameters) parameters[key] = value;
     Json summary = Json::object();
     for (const SummaryColumn& column : summary_columns())
-        if (std::find(sweep.summary.begin(), sweep.summary.end(), column.name) != sweep.summary.end())
+        if (std::ranges::find(sweep.summary, column.name) != sweep.summary.end())
             summary[std::string(column.name)] = number_or_null(sample.summary.*column.value);
     return {{"schema", 1},
             {"corda", version()},

@@ -32,8 +32,7 @@ std::optional<std::int64_t> shard_of(const std::string& name) {
     const std::size_t dot = name.rfind('.');
     if (dot == std::string::npos || dot <= kPrefix || dot > kPrefix + 18) return std::nullopt;
     const std::string digits = name.substr(kPrefix, dot - kPrefix);
-    if (!std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; }))
-        return std::nullopt;
+    if (!std::ranges::all_of(digits, [](char c) { return c >= '0' && c <= '9'; })) return std::nullopt;
     const std::int64_t shard = std::stoll(digits);
     const bool is_one = name == shard_name(shard) + ".tar" || name == shard_name(shard) + ".json";
     return is_one ? std::optional(shard) : std::nullopt;

@@ -50,7 +50,7 @@ Json json_of(const toml::node& node) {
 /// Whether a value has neither dates and times nor numbers that are not finite.
 bool is_finite(const Json& value) {
     if (value.is_structured())
-        return std::all_of(value.begin(), value.end(), [](const Json& entry) { return is_finite(entry); });
+        return std::ranges::all_of(value, [](const Json& entry) { return is_finite(entry); });
     return !value.is_null() && (!value.is_number_float() || std::isfinite(value.get<double>()));
 }
 
@@ -91,7 +91,7 @@ class SweepReader {
 
     void refuse_others(const toml::table& table, const std::string& path, const Names& names) {
         for (const auto& [key, node] : table) {
-            if (std::find(names.begin(), names.end(), key.str()) != names.end()) continue;
+            if (std::ranges::find(names, key.str()) != names.end()) continue;
             const auto meant = nearest(key.str(), names);
             const std::string remedy = meant ? fmt::format("did you mean \"{}\"?", *meant)
                                              : fmt::format("there are {}", fmt::join(names, ", "));
@@ -130,8 +130,7 @@ class SweepReader {
     /// The place of a word in a list of allowed ones.
     std::optional<std::size_t> word(const toml::node& node, const std::string& path, const Names& words) {
         const auto* const given = node.as_string();
-        const auto found =
-            given == nullptr ? words.end() : std::find(words.begin(), words.end(), given->get());
+        const auto found = given == nullptr ? words.end() : std::ranges::find(words, given->get());
         if (found != words.end()) return found - words.begin();
         fail(node, path, fmt::format("{}; give {}", described(node), fmt::join(words, ", ")));
         return std::nullopt;
@@ -177,7 +176,7 @@ class SweepReader {
                         "no key varies; give [vary] with keys of the scene and their values");
         std::vector<const toml::key*> keys;  // in the order of the file
         for (const auto& [key, node] : *vary) keys.push_back(&key);
-        std::sort(keys.begin(), keys.end(), [](const toml::key* a, const toml::key* b) {
+        std::ranges::sort(keys, [](const toml::key* a, const toml::key* b) {
             const auto place = [](const toml::source_position& at) { return std::pair(at.line, at.column); };
             return place(a->source().begin) < place(b->source().begin);
         });
@@ -380,7 +379,7 @@ class SweepReader {
                  fmt::format("{}; give a list of {}", described(*node), fmt::join(allowed, ", ")));
         for (std::size_t i = 0; list != nullptr && i < list->size(); ++i)
             if (const auto place = word(*list->get(i), fmt::format("output.{}[{}]", key, i), allowed))
-                if (std::find(chosen.begin(), chosen.end(), *place) == chosen.end()) chosen.push_back(*place);
+                if (std::ranges::find(chosen, *place) == chosen.end()) chosen.push_back(*place);
         return chosen;
     }
 

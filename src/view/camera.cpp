@@ -167,8 +167,7 @@ CameraTrack::CameraTrack(std::vector<Key> keys) : keys_(std::move(keys)), slopes
 }
 
 CameraDef CameraTrack::at(const CameraDef& def, double time_s) const {
-    const auto later = std::upper_bound(keys_.begin(), keys_.end(), time_s,
-                                        [](double t, const Key& key) { return t < key.time_s; });
+    const auto later = std::ranges::upper_bound(keys_, time_s, {}, &Key::time_s);
     const auto i = static_cast<std::size_t>(later - keys_.begin());
     CameraDef placed = def;
     if (i == 0 || i == keys_.size()) {

@@ -87,7 +87,7 @@ PixelRect capsule_bounds(const Capsule& capsule, int width, int height) {
 }
 
 bool DrawList::has_tints() const {
-    return std::any_of(layers.begin(), layers.end(), [](const Layer& layer) { return layer.is_tinted; });
+    return std::ranges::any_of(layers, &Layer::is_tinted);
 }
 
 bool DrawList::shows_nothing() const {
@@ -96,7 +96,7 @@ bool DrawList::shows_nothing() const {
         return box.x1 <= 0.0F || box.y1 <= 0.0F || box.x0 >= static_cast<float>(width) ||
                box.y0 >= static_cast<float>(height);
     };
-    return std::all_of(layers.begin(), layers.end(), [&](const Layer& layer) {
+    return std::ranges::all_of(layers, [&](const Layer& layer) {
         const Capsule* const first = capsules.data() + layer.first_capsule;
         return layer.is_note || std::all_of(first, first + layer.capsule_count, is_outside);
     });

@@ -203,8 +203,7 @@ std::vector<const FallbackFont*> fallback_fonts(const std::vector<std::string>& 
     for (const std::string& text : texts) {
         for (const FontRun& run : font.runs_of(text)) {
             const auto is_its = [&](const FallbackFont* other) { return other->name() == run.font->name(); };
-            if (run.font != nullptr && std::none_of(fonts.begin(), fonts.end(), is_its))
-                fonts.push_back(run.font);
+            if (run.font != nullptr && std::ranges::none_of(fonts, is_its)) fonts.push_back(run.font);
         }
     }
     return fonts;

@@ -96,7 +96,7 @@ std::vector<std::string> digits_of(std::span<const double> times_s) {
             all.push_back(fmt::format("{:.{}f}", time_s, digits));
             is_exact &= std::abs(std::round(time_s * steps_1_s) / steps_1_s - time_s) < 1e-9;
         }
-        const bool are_apart = std::adjacent_find(all.begin(), all.end()) == all.end();
+        const bool are_apart = std::ranges::adjacent_find(all) == all.end();
         if (is_exact || (digits >= kFewDigits && are_apart)) break;
     }
     return all;
@@ -322,15 +322,15 @@ void Overlay::draw_times(std::span<const PoseTime> poses, DrawList& list) {
             return sim::length(x_px, y_px) - to.label.clear_px;
         };
         const auto is_clear = [&](const PixelRect& box) {  // whose time it is
-            return std::all_of(poses.begin(), poses.end(), [&](const PoseTime& other) {
+            return std::ranges::all_of(poses, [&](const PoseTime& other) {
                 return &other == &*pose || distance_px(box, other) > distance_px(box, *pose) + gap_px;
             });
         };
         const auto is_free = [&](const PixelRect& box) {
             const PixelRect around{box.x0 - gap_px, box.y0 - gap_px, box.x1 + gap_px, box.y1 + gap_px};
             return !box.empty() && around.intersected({0, 0, width_, height_}) == around &&
-                   std::all_of(taken.begin(), taken.end(),
-                               [&](const PixelRect& other) { return around.intersected(other).empty(); });
+                   std::ranges::all_of(
+                       taken, [&](const PixelRect& other) { return around.intersected(other).empty(); });
         };
         for (int i = 0; i < 16; ++i) {  // near, then farther away
             const double clear_px = pose->label.clear_px + gap_px + (i < 8 ? 0.0 : kLine * em_px_);

@@ -171,7 +171,7 @@ BodyLabel SceneView::label_at(std::size_t particle, std::string text) const {
     for (const Ball& ball : bodies_[b].balls)
         if (ball.particle == particle) clear_px = ball.radius_px;
     const std::vector<std::size_t> ends = free_ends(*system_);
-    const bool is_end = std::binary_search(ends.begin(), ends.end(), particle);
+    const bool is_end = std::ranges::binary_search(ends, particle);
     const std::size_t next = particle == system_->bodies[b].first_particle ? particle + 1 : particle - 1;
     return {std::move(text), particle, is_end ? next : particle, clear_px};
 }
@@ -195,7 +195,7 @@ BodyLabel SceneView::label_of(std::size_t b) const {
     const std::vector<std::size_t> ends = free_ends(*system_);
     const auto free = std::lower_bound(ends.begin(), ends.end(), body.first_particle);
     const bool has_free_end = free != ends.end() && *free < end;
-    const bool is_shared = std::any_of(system_->bodies.begin(), system_->bodies.end(), shares_pin);
+    const bool is_shared = std::ranges::any_of(system_->bodies, shares_pin);
     const LabelAt place =
         bodies_[b].label_at.value_or(pin == end || is_shared ? LabelAt::kEnd : LabelAt::kPin);
     if (has_free_end && (pin == end || place == LabelAt::kEnd)) return label_at(*free, body.label);
@@ -231,8 +231,7 @@ std::vector<Color> SceneView::body_colors() const {
 bool SceneView::needs_motion() const {
     const auto& inverse = system_->inverse_mass_1_kg;
     if (quantity_of(style_.color_by) || style_.arrows != Arrows::kNone) return true;
-    return style_.supports && gravity_m_s2_ != Vec2{} &&
-           std::find(inverse.begin(), inverse.end(), 0.0) != inverse.end();
+    return style_.supports && gravity_m_s2_ != Vec2{} && std::ranges::find(inverse, 0.0) != inverse.end();
 }
 
 void SceneView::set_motion(std::span<const MotionBounds> motion) {

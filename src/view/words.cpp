@@ -66,7 +66,7 @@ std::string translated(std::string_view english, Language language) {
 }
 
 std::string localized(std::string numbers, Language language) {
-    std::replace(numbers.begin(), numbers.end(), '.', decimal_sign(language));
+    std::ranges::replace(numbers, '.', decimal_sign(language));
     return numbers;
 }
 

@@ -170,8 +170,7 @@ std::vector<Color> PaletteMaker::cut_boxes() const {
     std::vector<Box> boxes;
     if (!bins.empty()) boxes.push_back(box_of(bins, 0, bins.size()));
     while (!boxes.empty() && boxes.size() < kMaxColors) {
-        const auto heaviest = std::max_element(
-            boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a.weight < b.weight; });
+        const auto heaviest = std::ranges::max_element(boxes, {}, &Box::weight);
         if (heaviest->weight == 0) break;
         const Box box = *heaviest;
         const std::size_t cut = sort_and_cut(bins, box);
@@ -186,7 +185,7 @@ std::vector<Color> PaletteMaker::cut_boxes() const {
 Palette PaletteMaker::make() const {
     if (exact_.size() > kMaxColors) return Palette(cut_boxes());
     std::vector<std::uint32_t> sorted(exact_.begin(), exact_.end());
-    std::sort(sorted.begin(), sorted.end());  // the order of the set is no order
+    std::ranges::sort(sorted);  // the order of the set is no order
     std::vector<Color> colors;
     for (const std::uint32_t rgb : sorted) colors.push_back(color_of(rgb));
     return Palette(std::move(colors));

@@ -113,8 +113,8 @@ Contents contents_of(const std::string& folder) {
     }
     if (failure) fail_file("read", folder, failure.value());
     const auto key = [](const ChunkFile& chunk) { return std::pair(chunk.number, -chunk.frames); };
-    std::sort(contents.chunks.begin(), contents.chunks.end(),
-              [&](const ChunkFile& a, const ChunkFile& b) { return key(a) < key(b); });
+    std::ranges::sort(contents.chunks,
+                      [&](const ChunkFile& a, const ChunkFile& b) { return key(a) < key(b); });
     return contents;
 }
 

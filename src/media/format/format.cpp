@@ -43,7 +43,7 @@ std::vector<std::string_view> names_of(const Ending& ending) {
 
 /// Adds names that are not there yet.
 void add_new(std::string_view name, std::vector<std::string_view>& names) {
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
 }
 
 bool is_available(const Codec& codec) {
@@ -100,8 +100,8 @@ const char* word_of(PixelChoice pix) {
 }
 
 bool has_choice(const Codec& codec, PixelChoice pix) {
-    return std::any_of(codec.pixel_formats.begin(), codec.pixel_formats.end(),
-                       [pix](const char* name) { return name != nullptr && is_of_choice(name, pix); });
+    return std::ranges::any_of(
+        codec.pixel_formats, [pix](const char* name) { return name != nullptr && is_of_choice(name, pix); });
 }
 
 /// The choices of video.pix that a codec has.
@@ -189,7 +189,7 @@ void check_size_for(const Format& format, const VideoDef& def) {
 void check_preset(const Format& format, const EncoderDef& def) {
     const Codec& codec = *format.codec;
     const auto& presets = codec.presets;
-    if (def.preset.empty() || std::find(presets.begin(), presets.end(), def.preset) != presets.end()) return;
+    if (def.preset.empty() || std::ranges::find(presets, def.preset) != presets.end()) return;
     if (presets.empty())
         throw_usage("preset '{}': {} has no presets; leave it out", def.preset, format.words());
     throw_usage("preset '{}' is unknown to {}; use one of {}", def.preset, codec.name,
@@ -279,10 +279,10 @@ int Format::crf_of(const EncoderDef& def) const {
 std::vector<std::string_view> codec_names() {
     std::vector<std::string_view> names;
     const auto can_be_asked_for = [](const Codec& codec) {
-        return std::any_of(endings().begin(), endings().end(), [&codec](const Ending& ending) {
+        return std::ranges::any_of(endings(), [&codec](const Ending& ending) {
             const auto of_ending = names_of(ending);
             return ending.kind != FileKind::kAnimation &&
-                   std::find(of_ending.begin(), of_ending.end(), codec.name) != of_ending.end();
+                   std::ranges::find(of_ending, codec.name) != of_ending.end();
         });
     };
     for (const Codec& codec : codecs())
@@ -300,15 +300,14 @@ std::vector<std::string_view> preset_names() {
 }
 
 const Codec* find_codec(std::string_view name) {
-    const auto row = std::find_if(codecs().begin(), codecs().end(), [name](const Codec& codec) {
-        return name == codec.name || name == codec.short_name;
-    });
+    const auto row = std::ranges::find_if(
+        codecs(), [name](const Codec& codec) { return name == codec.name || name == codec.short_name; });
     return row == codecs().end() ? nullptr : &*row;
 }
 
 const Codec* find_stream_codec(std::string_view stream) {
-    const auto row = std::find_if(codecs().begin(), codecs().end(),
-                                  [stream](const Codec& codec) { return stream == codec.stream; });
+    const auto row =
+        std::ranges::find_if(codecs(), [stream](const Codec& codec) { return stream == codec.stream; });
     return row == codecs().end() ? nullptr : &*row;
 }
 
@@ -318,8 +317,7 @@ std::span<const Ending> endings() {
 
 const Ending& find_ending(std::string_view path) {
     const auto row_of = [](FileKind kind) -> const Ending& {
-        return *std::find_if(endings().begin(), endings().end(),
-                             [kind](const Ending& row) { return row.kind == kind; });
+        return *std::ranges::find(endings(), kind, &Ending::kind);
     };
     if (is_standard_output(std::string(path))) return row_of(FileKind::kStream);
     const std::string ending = std::filesystem::path(path).extension().string();
@@ -328,9 +326,9 @@ const Ending& find_ending(std::string_view path) {
         return row_of(FileKind::kPictures);
     }
     const auto find = [](std::string_view text) {
-        return text.empty() ? endings().end()
-                            : std::find_if(endings().begin(), endings().end(),
-                                           [text](const Ending& row) { return text == row.text; });
+        return text.empty()
+                   ? endings().end()
+                   : std::ranges::find_if(endings(), [text](const Ending& row) { return text == row.text; });
     };
     if (const auto row = find(ending); row != endings().end()) return *row;
     const std::string usual = lower(ending);
@@ -394,8 +392,8 @@ std::string endings_with_alpha() {
 
 bool can_be_transparent(const Ending& ending) {
     const auto& formats = find_codec(ending.codecs.front())->pixel_formats;
-    return std::any_of(formats.begin(), formats.end(),
-                       [](const char* name) { return name != nullptr && has_alpha_plane(name); });
+    return std::ranges::any_of(formats,
+                               [](const char* name) { return name != nullptr && has_alpha_plane(name); });
 }
 
 }  // namespace corda::media

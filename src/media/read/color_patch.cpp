@@ -54,13 +54,12 @@ std::vector<std::array<int, 2>> positions(const Image& frame) {
 }
 
 bool has_color(const std::vector<ColorPatch>& patches, const ColorPatch& patch) {
-    return std::any_of(patches.begin(), patches.end(),
-                       [&](const ColorPatch& p) { return p.rgb == patch.rgb; });
+    return std::ranges::any_of(patches, [&](const ColorPatch& p) { return p.rgb == patch.rgb; });
 }
 
 bool has_place(const std::vector<ColorPatch>& patches, const ColorPatch& patch) {
-    return std::any_of(patches.begin(), patches.end(),
-                       [&](const ColorPatch& p) { return p.x == patch.x && p.y == patch.y; });
+    return std::ranges::any_of(patches,
+                               [&](const ColorPatch& p) { return p.x == patch.x && p.y == patch.y; });
 }
 
 }  // namespace

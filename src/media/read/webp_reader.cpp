@@ -28,7 +28,7 @@ std::string all_of(const std::string& path) {
 
 bool fits(Rational fps, const std::vector<std::int64_t>& ends, std::int64_t ticks_per_second) {
     std::int64_t k = 0;
-    return std::all_of(ends.begin(), ends.end(), [&](std::int64_t end) {
+    return std::ranges::all_of(ends, [&](std::int64_t end) {
         ++k;
         return (2 * ticks_per_second * k * fps.den + fps.num) / (2 * fps.num) == end;
     });

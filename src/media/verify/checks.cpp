@@ -110,7 +110,7 @@ int least_level(const Codec& codec, const VerifyReport& report) {
     const auto allows_side = [](std::int64_t side, int most, const Level& level) {
         return most > 0 ? side <= most : side * side <= 8 * level.picture;
     };
-    const auto least = std::find_if(codec.levels.begin(), codec.levels.end(), [&](const Level& level) {
+    const auto least = std::ranges::find_if(codec.levels, [&](const Level& level) {
         return width * height <= level.picture && allows_side(width, level.max_width, level) &&
                allows_side(height, level.max_height, level) &&
                static_cast<double>(width * height) * report.fps.value() <= static_cast<double>(level.per_s);
@@ -147,7 +147,7 @@ void check_level(VerifyReport& report) {
 /// True for an H.264 profile that browsers and QuickTime refuse; that of 4:4:4 has a row of its own.
 bool has_odd_profile(const VerifyReport& report) {
     constexpr std::array<std::string_view, 4> kPlayable{"Constrained Baseline", "Baseline", "Main", "High"};
-    const bool is_playable = std::find(kPlayable.begin(), kPlayable.end(), report.profile) != kPlayable.end();
+    const bool is_playable = std::ranges::find(kPlayable, report.profile) != kPlayable.end();
     const bool is_444 = report.profile == "High 4:4:4 Predictive" && report.pixel_format == "yuv444p";
     return report.codec == "h264" && !is_playable && !is_444;
 }
@@ -190,7 +190,7 @@ void check_picture_format(const DecodedVideo& video, VerifyReport& report) {
     if (report.frames == 0) return;
     const std::span<const Players> players = players_of(report.codec);
     const bool is_in_usual_container =
-        std::any_of(players.begin(), players.end(), [&](const Players& row) { return is_in(report, row); });
+        std::ranges::any_of(players, [&](const Players& row) { return is_in(report, row); });
     if (players.empty()) {
         problem(report, "the codec is {}; browsers and QuickTime play H.264 everywhere: render with libx264",
                 report.codec);
@@ -213,7 +213,7 @@ void check_picture_format(const DecodedVideo& video, VerifyReport& report) {
         problem(report, "H.265 is tagged hev1, which Safari and QuickTime refuse; remedy: {}",
                 copy_command(report, plain(report.container)));
     }
-    const bool is_playable = std::any_of(players.begin(), players.end(), [&](const Players& row) {
+    const bool is_playable = std::ranges::any_of(players, [&](const Players& row) {
         return (is_in(report, row) || !is_in_usual_container) && has_pixels(report, row);
     });
     if (players.empty() ? report.pixel_format != "yuv420p" : !is_playable) {
@@ -252,9 +252,8 @@ void check_tags(const DecodedVideo& video, VerifyReport& report) {
 void add_notes(const DecodedVideo& video, VerifyDepth depth, VerifyReport& report) {
     const std::string trouble = level_problem(report);
     const std::span<const Players> players = players_of(report.codec);
-    const auto row = std::find_if(players.begin(), players.end(), [&](const Players& each) {
-        return is_in(report, each) && has_pixels(report, each);
-    });
+    const auto row = std::ranges::find_if(
+        players, [&](const Players& each) { return is_in(report, each) && has_pixels(report, each); });
     if (!trouble.empty() && !has_odd_profile(report)) {
         report.notes.push_back(fmt::format(
             "{}, {}: {}: VLC, mpv and ffmpeg play it, browsers only without the hardware's decoder; "

@@ -160,8 +160,7 @@ class Decoding {
         for (std::int64_t& end : ends_) end -= start;
         const std::int64_t delay = ends_.front();
         std::int64_t k = 0;
-        const bool is_even =
-            std::all_of(ends_.begin(), ends_.end(), [&](std::int64_t end) { return end == ++k * delay; });
+        const bool is_even = std::ranges::all_of(ends_, [&](std::int64_t end) { return end == ++k * delay; });
         auto fps = rate_of_ends(ends_, told_, kGifTicks);
         if (is_even && fps != told_ && delay > 0) fps = Rational::reduced(kGifTicks, delay);
         video_.is_rounded = !is_even;

@@ -55,7 +55,7 @@ constexpr double kCheckStep = 1.0 / 3.0;
 constexpr double kNominalIntervalSeconds = 1.0 / 60.0;
 
 bool has_kinks(const System& system) {
-    return std::any_of(system.bodies.begin(), system.bodies.end(), [](const Body& body) {
+    return std::ranges::any_of(system.bodies, [](const Body& body) {
         return body.material.is_string && body.material.compliance_1_n > 0.0;
     });
 }
@@ -258,7 +258,7 @@ BodyPlan record_named(const System& system, const WorldDef& world, const PlanDef
 StandsStill why_still(const System& system, const Recording& recording) {
     constexpr double kStill = 1e-9;  // of the length
     const Body& body = system.bodies.front();
-    const auto pins = std::count(system.inverse_mass_1_kg.begin(), system.inverse_mass_1_kg.end(), 0.0);
+    const auto pins = std::ranges::count(system.inverse_mass_1_kg, 0.0);
     if (!body.is_net || body.material.compliance_1_n > 0.0 || pins < 2) return StandsStill::kNo;
     MotionBounds start;
     start.include({0.0, system.x_m, system.y_m});

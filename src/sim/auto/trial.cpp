@@ -118,9 +118,9 @@ double hidden_m(const System& system, const Trial& trial) {
     const auto* run = std::get_if<ExactDef>(&trial.method);
     if (run != nullptr && run->implicit) return kOfImplicit * run->tolerance * largest_length_m(system);
     const auto* check = std::get_if<ExactDef>(&trial.check);
-    const bool vibrates = !system.bends.empty() ||
-                          std::any_of(system.bodies.begin(), system.bodies.end(),
-                                      [](const Body& body) { return body.material.compliance_1_n > 0.0; });
+    const bool vibrates = !system.bends.empty() || std::ranges::any_of(system.bodies, [](const Body& body) {
+        return body.material.compliance_1_n > 0.0;
+    });
     if (run == nullptr || check == nullptr || !vibrates) return 0.0;
     // As many as it takes if the tolerance limits the steps, of order 8. Square roots are the same
     // everywhere.

@@ -52,8 +52,7 @@ class Joiner {
             if (own == kNone && find(k) != find(ground())) own = static_cast<std::uint32_t>(groups.count++);
             groups.of_bar.push_back(own);
         }
-        std::replace(groups.of_bar.begin(), groups.of_bar.end(), kNone,
-                     static_cast<std::uint32_t>(groups.count));
+        std::ranges::replace(groups.of_bar, kNone, static_cast<std::uint32_t>(groups.count));
         groups.is_held = held_;
     }
 

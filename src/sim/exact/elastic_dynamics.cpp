@@ -18,7 +18,7 @@ constexpr double kStableOmegaH = 5.0;
 double size_of(const System& system) {
     if (system.bodies.front().is_chain) return links_length_m(system, system.bodies.front());
     const auto extent = [](const std::vector<double>& x_m) {
-        const auto [least, most] = std::minmax_element(x_m.begin(), x_m.end());
+        const auto [least, most] = std::ranges::minmax_element(x_m);
         return *most - *least;
     };
     return length(extent(system.x_m), extent(system.y_m));

@@ -48,7 +48,7 @@ class Exact : public Solver {
     }
     [[nodiscard]] bool tensions(std::vector<double>& tension_n) override {
         dynamics().tensions(output_.data(), tension_n);
-        return std::none_of(tension_n.begin(), tension_n.end(), [](double n) { return std::isnan(n); });
+        return std::ranges::none_of(tension_n, [](double n) { return std::isnan(n); });
     }
     [[nodiscard]] std::vector<MethodDef> methods() const override { return {def_}; }
 

@@ -60,9 +60,8 @@ NetDynamics::NetDynamics(const System& system, const Forces& forces)
     const auto moves = [&system](const Bar& bar) {
         return !system.is_pinned(bar.a) || !system.is_pinned(bar.b);
     };
-    const auto moving =
-        static_cast<std::size_t>(std::count_if(system.bars.begin(), system.bars.end(), moves));
-    const auto free = mass_kg_.size() - static_cast<std::size_t>(std::count(held.begin(), held.end(), 0.0));
+    const auto moving = static_cast<std::size_t>(std::ranges::count_if(system.bars, moves));
+    const auto free = mass_kg_.size() - static_cast<std::size_t>(std::ranges::count(held, 0.0));
     has_tensions_ = held == system.inverse_mass_1_kg && moving + groups_ + (is_free_ ? 2 : 0) == 2 * free;
     measure_inertia();
     set_start(system);

@@ -453,8 +453,8 @@ bool ImplicitPart::can_move(const System& system, const Body& body) {
     std::size_t pins = 0;
     for (std::size_t i = 0; i < system.particle_count(); ++i)
         if (is_of_body(i) && system.is_pinned(i)) ++pins;
-    return pins == 1 && std::none_of(system.bends.begin(), system.bends.end(),
-                                     [&](const Bend& bend) { return is_of_body(bend.a); });
+    return pins == 1 &&
+           std::ranges::none_of(system.bends, [&](const Bend& bend) { return is_of_body(bend.a); });
 }
 
 ImplicitPart::ImplicitPart(const System& system, const Forces& forces, const ExactDef& def)

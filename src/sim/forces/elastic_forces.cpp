@@ -40,9 +40,8 @@ Along along(const double* x_m, const double* y_m, std::uint32_t from, std::uint3
 ElasticForces::ElasticForces(const System& system, std::size_t first_particle, std::size_t particle_count)
     : first_particle_(first_particle) {
     const std::size_t end = first_particle + particle_count;
-    auto body = std::partition_point(system.bodies.begin(), system.bodies.end(), [&](const Body& before) {
-        return before.first_particle < first_particle;
-    });
+    auto body = std::ranges::partition_point(
+        system.bodies, [&](const Body& before) { return before.first_particle < first_particle; });
     for (; body != system.bodies.end() && body->first_particle < end; ++body) {
         if (body->material.compliance_1_n > 0.0) add_springs(system, *body);
     }
@@ -66,8 +65,8 @@ void ElasticForces::add_joints(const System& system, std::size_t particle_count)
     const double* const x_m = system.x_m.data();
     const double* const y_m = system.y_m.data();
     // In the order of bodies, as bars are.
-    auto next = std::partition_point(system.bends.begin(), system.bends.end(),
-                                     [&](const Bend& before) { return before.b < first_particle_; });
+    auto next = std::ranges::partition_point(system.bends,
+                                             [&](const Bend& before) { return before.b < first_particle_; });
     for (; next != system.bends.end() && next->b < first_particle_ + particle_count; ++next) {
         const Bend& bend = *next;
         if (system.is_pinned(bend.a) && system.is_pinned(bend.b) && system.is_pinned(bend.c)) continue;

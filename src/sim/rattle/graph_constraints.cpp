@@ -232,7 +232,7 @@ bool GraphConstraints::stay_implied(Motion motion) {
 }
 
 bool GraphConstraints::meet_implied(const Motion& motion) const {
-    return std::all_of(implied_.begin(), implied_.end(), [&motion](const Link& link) {
+    return std::ranges::all_of(implied_, [&motion](const Link& link) {
         const double dx = motion.x_m[link.b] - motion.x_m[link.a];
         const double dy = motion.y_m[link.b] - motion.y_m[link.a];
         const double square = link.rest_m * link.rest_m;

@@ -124,8 +124,7 @@ Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def,
 
 const char* Rattle::problem_of(const RattleDef& def) {
     const auto& orders = RattleDef::kOrders;
-    if (std::find(orders.begin(), orders.end(), def.order) == orders.end())
-        return "order is none that there is";
+    if (std::ranges::find(orders, def.order) == orders.end()) return "order is none that there is";
     if (def.step_s && !(*def.step_s > 0.0 && std::isfinite(*def.step_s))) return "step_s is not > 0";
     return def.guard > 0.0 && def.guard <= 1.0 ? nullptr : "guard is not within 0 .. 1";
 }
