@@ -12,7 +12,6 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
-#include "corda/core/cancel.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"

@@ -14,7 +14,6 @@
 #include "corda/golden/suite.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/media/read/stored_video.hpp"
-#include "interrupt.hpp"
 
 namespace corda::app {
 namespace {

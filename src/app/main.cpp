@@ -15,7 +15,6 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
-#include "corda/core/cancel.hpp"
 #include "corda/core/output_file.hpp"
 #include "interrupt.hpp"
 

@@ -10,10 +10,8 @@
 #include "commands.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/timeline.hpp"
-#include "corda/scene/check_limits.hpp"
 #include "corda/scene/read_file.hpp"
 #include "corda/scene/schema.hpp"
-#include "interrupt.hpp"
 
 namespace corda::app {
 namespace {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <memory>
-#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -10,7 +9,6 @@
 #include "corda/pipeline/motion.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/sim/solver.hpp"
-#include "interrupt.hpp"
 
 namespace corda::app {
 

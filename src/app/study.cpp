@@ -1,12 +1,10 @@
 #include "corda/study/study.hpp"
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"

@@ -6,7 +6,6 @@
 #include "commands.hpp"
 #include "corda/core/text.hpp"
 #include "corda/pipeline/provenance.hpp"
-#include "interrupt.hpp"
 
 namespace corda::app {
 namespace {

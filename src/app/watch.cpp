@@ -1,15 +1,10 @@
-#include <fmt/format.h>
 
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <vector>
 
+#include "corda/serve/watch.hpp"
 #include "commands.hpp"
 #include "corda/core/text.hpp"
 #include "corda/serve/file_watch.hpp"
 #include "corda/serve/server.hpp"
-#include "corda/serve/watch.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {

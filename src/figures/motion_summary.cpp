@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
-
-#include <fmt/format.h>
 
 #include "corda/core/cancel.hpp"
 #include "corda/core/timeline.hpp"

@@ -3,7 +3,6 @@
 #include <epoxy/egl.h>
 #include <unistd.h>
 
-#include <optional>
 #include <string>
 #include <vector>
 

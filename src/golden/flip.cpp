@@ -10,7 +10,6 @@
 #include <cstring>
 #include <numbers>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "corda/core/cancel.hpp"

@@ -1,6 +1,5 @@
 #include "corda/pipeline/film.hpp"
 
-#include <cmath>
 #include <utility>
 
 #include "corda/core/cancel.hpp"

@@ -3,12 +3,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/cancel.hpp"
 #include "corda/gl/context.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/scene/scene.hpp"

@@ -1,11 +1,9 @@
 // Samples of a sweep, for corda.sweep() of corda/__init__.py.
 #include <corda/sweep/sample.hpp>
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "py_film.hpp"
 

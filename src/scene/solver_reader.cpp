@@ -1,8 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <utility>
-
 #include "corda/scene/field.hpp"
 #include "corda/scene/readers.hpp"
 #include "corda/sim/solver.hpp"

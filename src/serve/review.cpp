@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
-#include <filesystem>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
-#include "corda/core/text.hpp"
 #include "corda/golden/cases.hpp"
 #include "corda/media/png/png.hpp"
 #include "embedded_page.hpp"

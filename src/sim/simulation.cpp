@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/cancel.hpp"
 #include "corda/core/cpu.hpp"
 #include "corda/sim/forces/forces.hpp"
 #include "corda/sim/recording.hpp"

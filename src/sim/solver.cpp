@@ -1,10 +1,8 @@
 #include "corda/sim/solver.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <limits>
 #include <numeric>
 #include <string>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "corda/reference/numbers.hpp"
 #include "corda/reference/pendulum.hpp"

@@ -5,13 +5,10 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <numeric>
 #include <optional>
-#include <span>
 
 #include "corda/core/text.hpp"
 #include "corda/media/format/format.hpp"

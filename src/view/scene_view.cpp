@@ -1,7 +1,6 @@
 #include "corda/view/scene_view.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "corda/core/basics.hpp"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cstring>
-#include <string_view>
 #include <utility>
 
 #include "corda/core/text.hpp"

@@ -1,7 +1,6 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "corda/media/animation/animation.hpp"
 #include "corda/media/bytes.hpp"

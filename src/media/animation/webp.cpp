@@ -3,7 +3,6 @@
 #include <webp/mux.h>
 
 #include <memory>
-#include <utility>
 
 #include "corda/core/text.hpp"
 #include "corda/media/animation/animation.hpp"

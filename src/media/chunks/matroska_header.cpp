@@ -1,6 +1,5 @@
 #include "corda/media/chunks/track_output.hpp"
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string_view>

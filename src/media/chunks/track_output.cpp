@@ -6,7 +6,6 @@
 #include <cerrno>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/cancel.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/text.hpp"
 

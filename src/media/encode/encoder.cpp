@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/cancel.hpp"
 #include "corda/core/text.hpp"
 #include "corda/media/chunks/chunk.hpp"
 #include "corda/media/encode/pixels.hpp"

@@ -1,6 +1,5 @@
 #include "corda/media/encode/pixels.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cassert>

@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <new>
 #include <optional>
-#include <string_view>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/child_process.hpp"

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "corda/core/cancel.hpp"
 #include "corda/core/child_process.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/text.hpp"

@@ -1,10 +1,6 @@
 #include "corda/media/verify/verify.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <optional>
 
 #include "corda/core/file.hpp"

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "corda/core/cancel.hpp"
 #include "corda/sim/rattle/constraint_solver.hpp"

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/cancel.hpp"
 #include "corda/core/timeline.hpp"
 #include "corda/sim/forces/forces.hpp"
 #include "corda/sim/recording.hpp"

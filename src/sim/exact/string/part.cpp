@@ -1,7 +1,6 @@
 #include "corda/sim/exact/string/part.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <string>
