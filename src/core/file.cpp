@@ -54,6 +54,10 @@ std::uintmax_t file_size(const std::string& path) {
     return bytes;
 }
 
+std::string file_bytes(const std::string& path) {
+    return first_bytes(path, file_size(path));
+}
+
 bool leads_to(const std::string& path, const Descriptor& file) {
     struct stat open {};
     struct stat named {};

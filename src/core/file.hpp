@@ -33,6 +33,8 @@ void check_path(const std::string& path);
 
 /// The size in bytes of an ordinary file. Throws corda::Error (kIo).
 [[nodiscard]] std::uintmax_t file_size(const std::string& path);
+/// All its bytes. Throws corda::Error (kIo).
+[[nodiscard]] std::string file_bytes(const std::string& path);
 
 /// Owns an open file descriptor.
 class Descriptor {

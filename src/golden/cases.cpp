@@ -171,10 +171,6 @@ void select(const SuiteDef& def, std::vector<Case>& cases, std::vector<std::stri
     }
 }
 
-std::string file_bytes(const std::string& path) {
-    return first_bytes(path, file_size(path));
-}
-
 Provenance provenance_of_file(const std::string& path) {
     try {
         return provenance_in(read_png_info(path));

@@ -51,9 +51,6 @@ void publish(const std::string& folder, const Files& files, const std::vector<st
 /// kIo; kUsage for a golden.json of another kind.
 void write_new(const SuiteDef& def, const std::vector<Case>& cases, const Files& files);
 
-/// The bytes of a file. Throws corda::Error (kIo).
-[[nodiscard]] std::string file_bytes(const std::string& path);
-
 /// The provenance of a golden picture; empty if it cannot be read.
 [[nodiscard]] Provenance provenance_of_file(const std::string& path);
 

@@ -1,6 +1,5 @@
 #include "corda/report/report_folder.hpp"
 
-#include <array>
 #include <filesystem>
 #include <utility>
 
@@ -10,18 +9,6 @@
 #include "corda/report/writers.hpp"
 
 namespace corda::report {
-namespace {
-
-std::string contents_of(const std::string& path) {
-    const FileHandle file = open_for_reading(path);
-    std::string bytes;
-    std::array<char, 65536> block{};
-    while (const std::size_t count = read_bytes(file, path, block.data(), block.size()))
-        bytes.append(block.data(), count);
-    return bytes;
-}
-
-}  // namespace
 
 ReportFolder::ReportFolder(std::string path, OutputOptions options, std::vector<int> widths_mm)
     : path_(std::move(path)), options_(options), widths_mm_(std::move(widths_mm)) {
@@ -38,29 +25,17 @@ void ReportFolder::write(const std::string& name, const std::string& bytes) {
     note(path);
 }
 
-void ReportFolder::add_picture(const Picture& picture) {
+template <class Write>
+void ReportFolder::add_figure(const std::string& id, bool is_small, const Write& write_as) {
+    // What is small on the page is read with the letters of the narrow one.
+    const int shown_mm = is_small ? widths_mm_.front() : widths_mm_.back();
     for (const int width_mm : widths_mm_) {
         for (const PlotFormat format : {PlotFormat::kSvg, PlotFormat::kPng, PlotFormat::kPdf}) {
             check_cancelled();
-            const std::string path =
-                path_of(file_stem(picture.id, width_mm, widths_mm_) + "." + ending(format));
-            picture.write(path, width_mm);
+            const std::string path = path_of(file_stem(id, width_mm, widths_mm_) + "." + ending(format));
+            write_as(path, format, width_mm);
             note(path);
-            // What is small on the page is read with the letters of the narrow one.
-            const int shown_mm = picture.is_small ? widths_mm_.front() : widths_mm_.back();
-            const bool is_shown = format == PlotFormat::kSvg && width_mm == shown_mm;
-            if (is_shown) svgs_[picture.id] = contents_of(path);
-        }
-    }
-}
-
-void ReportFolder::add_plot(const Plot& plot) {
-    for (const int width_mm : widths_mm_) {
-        for (const PlotFormat format : {PlotFormat::kSvg, PlotFormat::kPng, PlotFormat::kPdf}) {
-            check_cancelled();
-            const std::string picture = draw_plot(plot, format, width_mm);
-            write(file_stem(plot.id, width_mm, widths_mm_) + "." + ending(format), picture);
-            if (format == PlotFormat::kSvg) svgs_[plot.id] = picture;
+            if (format == PlotFormat::kSvg && width_mm == shown_mm) svgs_[id] = file_bytes(path);
         }
     }
 }
@@ -68,8 +43,13 @@ void ReportFolder::add_plot(const Plot& plot) {
 void ReportFolder::add(const Chapter& chapter) {
     check_report({{}, {}, {chapter}});
     for (const Table& table : chapter.tables) write(table.id + ".csv", csv_text(table));
-    for (const Picture& picture : chapter.pictures) add_picture(picture);
-    for (const Plot& plot : chapter.plots) add_plot(plot);
+    for (const Picture& picture : chapter.pictures)
+        add_figure(picture.id, picture.is_small,
+                   [&](const std::string& path, PlotFormat, int width_mm) { picture.write(path, width_mm); });
+    for (const Plot& plot : chapter.plots)
+        add_figure(plot.id, false, [&](const std::string& path, PlotFormat format, int width_mm) {
+            save_file(path, draw_plot(plot, format, width_mm), options_);
+        });
 }
 
 void ReportFolder::finish(Report report) {

@@ -36,8 +36,9 @@ class ReportFolder {
 
   private:
     void write(const std::string& name, const std::string& bytes);
-    void add_picture(const Picture& picture);
-    void add_plot(const Plot& plot);
+    /// Calls `write_as(path, format, width_mm)` for each file of a figure.
+    template <class Write>
+    void add_figure(const std::string& id, bool is_small, const Write& write_as);
 
     std::string path_;
     OutputOptions options_;

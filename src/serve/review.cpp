@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "corda/core/file.hpp"
 #include "corda/golden/cases.hpp"
 #include "corda/media/png/png.hpp"
 #include "embedded_page.hpp"
@@ -69,9 +70,8 @@ Response Review::picture(std::string_view path) const {
     const Checked& its = pictures_[index];
     const std::string_view kind(end, path.data() + path.size());
     if (kind == "/reference.png" && !its.reference.empty())
-        return {200, "image/png", golden::file_bytes(its.reference)};
-    if (kind == "/new.png" && !its.drawn_path.empty())
-        return {200, "image/png", golden::file_bytes(its.drawn_path)};
+        return {200, "image/png", file_bytes(its.reference)};
+    if (kind == "/new.png" && !its.drawn_path.empty()) return {200, "image/png", file_bytes(its.drawn_path)};
     if (kind == "/difference.png" && !its.reference.empty() && !its.drawn_path.empty())
         return {200, "image/png",
                 media::png_bytes(golden::amplified(read_png(its.reference), read_png(its.drawn_path)), {})};

@@ -201,7 +201,7 @@ std::string manifest_path(const std::string& folder) {
 
 std::optional<std::string> read_plain_file(const std::string& path) {
     if (!is_plain(path) || file_size(path) > kMaxFileBytes) return std::nullopt;
-    return first_bytes(path, file_size(path));
+    return file_bytes(path);
 }
 
 void write_plain_file(const std::string& path, std::string_view text) {

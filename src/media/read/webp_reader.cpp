@@ -4,7 +4,6 @@
 #include <webp/demux.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "corda/core/file.hpp"
@@ -12,18 +11,7 @@
 namespace corda::media {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{1} << 31;
-
-std::string all_of(const std::string& path) {
-    const FileHandle file = open_for_reading(path);
-    std::string all;
-    std::array<char, 1 << 16> piece{};
-    for (std::size_t count = 1; count > 0 && all.size() < kMaxBytes;) {
-        count = read_bytes(file, path, piece.data(), piece.size());
-        all.append(piece.data(), count);
-    }
-    return all;
-}
+constexpr std::uintmax_t kMaxBytes = std::uintmax_t{1} << 31;
 
 bool fits(Rational fps, const std::vector<std::int64_t>& ends, std::int64_t ticks_per_second) {
     std::int64_t k = 0;
@@ -59,7 +47,8 @@ void WebpReader::Free::operator()(WebPAnimDecoder* decoder) const {
     WebPAnimDecoderDelete(decoder);
 }
 
-WebpReader::WebpReader(const std::string& path) : bytes_(all_of(path)) {
+WebpReader::WebpReader(const std::string& path)
+    : bytes_(first_bytes(path, std::min(file_size(path), kMaxBytes))) {
     WebPAnimDecoderOptions options{};
     WebPAnimDecoderOptionsInit(&options);
     options.color_mode = MODE_RGBA;
