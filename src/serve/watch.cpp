@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
-#include <cmath>
 #include <exception>
 #include <new>
 #include <numbers>
@@ -301,12 +300,9 @@ void Watch::read_curves() {
         check_cancelled();
         const State& state = film.state(k);
         curves["t"].push_back(film.time_s(k));
-        if (!tracked.empty() && tracked.front().pin) {
-            const auto [body, tip, is_end, pin] = tracked.front();
-            const double x_m = state.x_m[tip] - state.x_m[*pin];
-            const double y_m = state.y_m[tip] - state.y_m[*pin];
-            curves["angle_deg"].push_back(std::atan2(x_m, -y_m) * 180.0 / std::numbers::pi);
-        }
+        if (!tracked.empty() && tracked.front().pin)
+            curves["angle_deg"].push_back(pipeline::turning_of(tracked.front(), state, nullptr).x * 180.0 /
+                                          std::numbers::pi);
         const Energy energy = film.energy();
         curves["kinetic_j"].push_back(energy.kinetic_j);
         curves["potential_j"].push_back(energy.potential_j());
