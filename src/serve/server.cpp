@@ -63,13 +63,6 @@ bool is_equal(std::string_view a, std::string_view b) {
     return difference == 0;
 }
 
-std::string lower(std::string_view text) {
-    std::string result(text);
-    for (char& c : result)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return result;
-}
-
 /// The name in "Example.org:8000", in lower case.
 std::string name_of(std::string_view host) {
     return lower(host.substr(0, host.find(':', host.starts_with('[') ? host.find(']') : 0)));

@@ -111,20 +111,21 @@ Watch::~Watch() {
     thread_.join();
 }
 
-void Watch::end() {
+template <class Change>
+void Watch::update(const Change& change) {
     {
         const std::lock_guard lock(mutex_);
-        is_ending_ = true;
+        change();
     }
     changed_.notify_all();
 }
 
+void Watch::end() {
+    update([this] { is_ending_ = true; });
+}
+
 void Watch::reload() {
-    {
-        const std::lock_guard lock(mutex_);
-        is_reload_asked_ = true;
-    }
-    changed_.notify_all();
+    update([this] { is_reload_asked_ = true; });
 }
 
 bool Watch::is_stale() const {
@@ -181,10 +182,10 @@ OnProgress Watch::progress() {
         constexpr auto kSilent = std::chrono::milliseconds(300);
         if (const auto now = Clock::now(); now - shown > kSilent) {
             shown = now;
-            const std::lock_guard lock(mutex_);
-            progress_ = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0.0;
-            ++version_;
-            changed_.notify_all();
+            update([&] {
+                progress_ = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0.0;
+                ++version_;
+            });
         }
         return true;
     };
@@ -194,16 +195,14 @@ void Watch::load() {
     int side_px = 0;
     NumberChanges changes;
     std::vector<Setting> settings;
-    {
-        const std::lock_guard lock(mutex_);
+    update([&] {
         is_busy_ = true;
         progress_ = 0.0;
         ++version_;
         side_px = def_.longest_side_px;
         changes = changes_;
         settings = def_.settings;
-    }
-    changed_.notify_all();
+    });
     const std::string text = scene::read_file(def_.path);
     const std::vector<SceneNumber> numbers = numbers_of(text, def_.path, settings);
     {
@@ -251,24 +250,20 @@ void Watch::publish(Json film) {
         film_ = std::move(film);
     }
     draw(playhead);  // before the page asks for it
-    {
-        const std::lock_guard lock(mutex_);
+    update([this] {
         problems_ = Json::array();
         is_busy_ = false;
         ++version_;
-    }
-    changed_.notify_all();
+    });
 }
 
 void Watch::fail(const std::string& message) {
-    {
-        const std::lock_guard lock(mutex_);
+    update([&] {
         problems_ = problems_of(message, def_.path);
         is_busy_ = false;
         are_curves_wanted_ = false;
         ++version_;
-    }
-    changed_.notify_all();
+    });
 }
 
 void Watch::draw(std::int64_t k) {
@@ -280,11 +275,7 @@ void Watch::draw(std::int64_t k) {
         if (is_interruption(error.code())) throw;
         picture.error = error.what();
     }
-    {
-        const std::lock_guard lock(mutex_);
-        keep(k, std::move(picture));
-    }
-    changed_.notify_all();
+    update([&] { keep(k, std::move(picture)); });
 }
 
 void Watch::read_curves() {
@@ -307,12 +298,10 @@ void Watch::read_curves() {
         curves["kinetic_j"].push_back(energy.kinetic_j);
         curves["potential_j"].push_back(energy.potential_j());
     }
-    {
-        const std::lock_guard lock(mutex_);
+    update([&] {
         curves_ = curves.dump();
         are_curves_wanted_ = false;
-    }
-    changed_.notify_all();
+    });
 }
 
 /// How many frames the film plays from the playhead to frame `k`.

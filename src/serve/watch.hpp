@@ -61,6 +61,9 @@ class Watch : NonCopyable {
         std::string error;  ///< in its place
     };
 
+    /// Calls `change` under the lock, and wakes who waits.
+    template <class Change>
+    void update(const Change& change);
     void work();
     void load();
     void forget_film();
