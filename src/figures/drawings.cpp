@@ -62,7 +62,6 @@ FigureTimes find_figure_times(const Film& film, const MotionSummary& motion,
                               const std::vector<double>& asked_s) {
     FigureTimes times;
     if (!asked_s.empty()) {
-        times.are_chosen = true;
         const double end_s = motion.failure ? motion.end_s : film.scene().world.duration_s;
         for (const double time_s : asked_s)
             if (time_s <= end_s) times.stills_s.push_back(time_s);

@@ -14,8 +14,7 @@ namespace corda::figures {
 struct FigureTimes {
     std::vector<double> strobe_s;
     std::vector<double> stills_s;
-    bool are_chosen = false;  ///< asked for, not found
-    bool is_swing = false;    ///< the strobe shows the first swing
+    bool is_swing = false;  ///< the strobe shows the first swing
 };
 
 /// The times that were asked for, increasing, as far as the motion goes. Without any, the strobe has six from

@@ -2,13 +2,11 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "corda/core/csv.hpp"
-#include "corda/core/text.hpp"
 #include "corda/report/writers.hpp"
 
 namespace corda::report {
@@ -18,38 +16,7 @@ namespace {
 constexpr double kMinRounded = 1e3;
 constexpr double kMaxInFull = 1e6;
 
-void check_name(const std::string& name, const char* kind, std::set<std::string>& seen) {
-    const bool is_plain =
-        !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
-    if (!is_plain) throw_error(ExitCode::kInternal, "the {} '{}' of a report is not [a-z0-9_]+", kind, name);
-    if (!seen.insert(name).second)
-        throw_error(ExitCode::kInternal, "a report has the {} '{}' twice", kind, name);
-}
-
-void check_table(const Table& table) {
-    std::set<std::string> keys;
-    for (const Column& column : table.columns) check_name(column.key, "column key", keys);
-    for (const auto& row : table.rows) {
-        if (row.size() == table.columns.size()) continue;
-        throw_error(ExitCode::kInternal, "a row of table '{}' has {} cells for {} columns", table.id,
-                    row.size(), table.columns.size());
-    }
-}
-
 }  // namespace
-
-void check_report(const Report& report) {
-    std::set<std::string> tables;
-    std::set<std::string> plots;
-    for (const Chapter& chapter : report.chapters) {
-        for (const Table& table : chapter.tables) {
-            check_name(table.id, "table id", tables);
-            check_table(table);
-        }
-        for (const Plot& plot : chapter.plots) check_name(plot.id, "plot id", plots);
-        for (const Picture& picture : chapter.pictures) check_name(picture.id, "picture id", plots);
-    }
-}
 
 bool is_failed(const Table& table, std::size_t row) {
     for (std::size_t column = 0; column < table.columns.size(); ++column) {

@@ -41,7 +41,6 @@ void ReportFolder::add_figure(const std::string& id, bool is_small, const Write&
 }
 
 void ReportFolder::add(const Chapter& chapter) {
-    check_report({{}, {}, {chapter}});
     for (const Table& table : chapter.tables) write(table.id + ".csv", csv_text(table));
     for (const Picture& picture : chapter.pictures)
         add_figure(picture.id, picture.is_small,
@@ -53,7 +52,6 @@ void ReportFolder::add(const Chapter& chapter) {
 }
 
 void ReportFolder::finish(Report report) {
-    check_report(report);
     report.widths_mm = widths_mm_;
     const auto is_missing = [this](const auto& figure) { return !svgs_.contains(figure.id); };
     for (Chapter& chapter : report.chapters) {

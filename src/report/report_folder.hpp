@@ -10,9 +10,8 @@
 namespace corda::report {
 
 /// Writes a report into a folder chapter by chapter, so that a failure keeps the chapters that were measured
-/// before. Files of other names stay. All functions throw corda::Error (kIo), and kInternal for a report that
-/// breaks the rules of report.hpp (check_report); a file has its name only if it is complete (see
-/// OutputFile).
+/// before. Files of other names stay. All functions throw corda::Error (kIo); a file has its name only if it
+/// is complete (see OutputFile).
 class ReportFolder {
   public:
     /// Makes the folder if it is missing. `widths_mm`: see Report.

@@ -35,10 +35,6 @@ enum class PlotFormat { kPng, kSvg, kPdf };
 /// finite, or not positive on a logarithmic axis) is left out and breaks its line.
 [[nodiscard]] std::string draw_plot(const Plot& plot, PlotFormat format, int width_mm);
 
-/// Throws corda::Error (kInternal) if an id or a column key is not [a-z0-9_]+ or occurs twice, or if a row
-/// does not have one cell per column.
-void check_report(const Report& report);
-
 /// Whether the row has a reason in the failure column.
 [[nodiscard]] bool is_failed(const Table& table, std::size_t row);
 

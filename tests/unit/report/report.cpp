@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "samples.hpp"
-#include "support/failure.hpp"
 
 namespace corda::report {
 namespace {
@@ -33,21 +32,6 @@ TEST(Report, FailureColumnIsShownIfARowFailed) {
     table.rows.pop_back();
     EXPECT_THAT(html_text({"R", {}, {{"C", {}, {table}, {}}}}, {}), Not(HasSubstr("Failure")));
     EXPECT_THAT(csv_text(table), HasSubstr(",failure\n"));  // programs find every key
-}
-
-TEST(Report, IsRefusedIfBroken) {
-    EXPECT_NO_THROW(check_report(small_report()));
-    const auto code_with = [](const std::function<void(Report&)>& change) {
-        Report report = small_report();
-        change(report);
-        return test::code_of([&report] { check_report(report); });
-    };
-    EXPECT_EQ(code_with([](Report& r) { r.chapters[0].tables[0].id = "../x"; }), ExitCode::kInternal);
-    EXPECT_EQ(code_with([](Report& r) { r.chapters[0].tables[0].id = ""; }), ExitCode::kInternal);
-    EXPECT_EQ(code_with([](Report& r) { r.chapters[1].plots[0].id = "error"; }), ExitCode::kInternal);
-    EXPECT_EQ(code_with([](Report& r) { r.chapters[0].tables[0].rows[1].pop_back(); }), ExitCode::kInternal);
-    EXPECT_EQ(code_with([](Report& r) { r.chapters[0].tables[0].columns[1].key = "method"; }),
-              ExitCode::kInternal);
 }
 
 TEST(Report, TablesFillTheirRows) {
