@@ -34,6 +34,11 @@ template <class... Values>
 /// Printable text stays as it is.
 [[nodiscard]] std::string printable(std::string_view bytes);
 
+/// True for a byte of UTF-8 within a character.
+[[nodiscard]] constexpr bool is_continuation(char byte) {
+    return (static_cast<unsigned char>(byte) & 0xc0U) == 0x80U;
+}
+
 /// A letter of ASCII in lower case; any other byte as it is.
 [[nodiscard]] constexpr char lower(char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;

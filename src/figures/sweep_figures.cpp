@@ -232,11 +232,6 @@ report::Plot plot_of(const sweep::SweepDef& sweep, const SweepPoints& all, const
     return plot;
 }
 
-/// Whether a byte continues a character of UTF-8.
-bool is_continuation(char c) {
-    return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
-}
-
 /// A cell of a contact sheet.
 struct Cell {
     Image image;

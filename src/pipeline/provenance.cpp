@@ -223,7 +223,7 @@ std::string shortened(std::string text, std::size_t bytes) {
     constexpr std::string_view kMore = "...";
     if (text.size() <= bytes) return text;
     std::size_t end = bytes - kMore.size();
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80) --end;  // within a character
+    while (end > 0 && is_continuation(text[end])) --end;
     return text.substr(0, end).append(kMore);
 }
 

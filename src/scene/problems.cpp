@@ -14,10 +14,6 @@ namespace {
 constexpr std::size_t kMaxShown = 20;
 constexpr std::size_t kMaxKept = 10'000;  // bounds the memory for a file that is not a scene at all
 
-bool is_continuation(char c) {
-    return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U;
-}
-
 }  // namespace
 
 std::string excerpt(std::string_view text, std::size_t longest) {

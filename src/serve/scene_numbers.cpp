@@ -87,7 +87,7 @@ std::size_t offset_of(std::string_view text, toml::source_position place) {
     for (std::size_t line = 1; line < place.line; ++line) offset = text.find('\n', offset) + 1;
     for (std::size_t column = 1; column < place.column; ++column) do
             ++offset;
-        while (offset < text.size() && (static_cast<unsigned char>(text[offset]) & 0xC0U) == 0x80U);
+        while (offset < text.size() && is_continuation(text[offset]));
     return offset;
 }
 
