@@ -197,16 +197,8 @@ void keep_standard_streams() {
 }
 
 ExitCode interruption() {
-    switch (asked_to_stop_by) {
-        case SIGHUP:
-            return ExitCode::kHungUp;
-        case SIGINT:
-            return ExitCode::kInterrupted;
-        case SIGTERM:
-            return ExitCode::kTerminated;
-        default:
-            return ExitCode::kOk;
-    }
+    // The codes are those of shells: 128 and the number of the signal.
+    return asked_to_stop_by == 0 ? ExitCode::kOk : static_cast<ExitCode>(128 + asked_to_stop_by);
 }
 
 void set_interruption_message(const char* message) {

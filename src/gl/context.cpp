@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 
 #include <epoxy/egl.h>
@@ -12,23 +14,6 @@
 #include "corda/gl/egl_display.hpp"
 
 namespace corda::gl {
-namespace {
-
-/// The definition that selects only this platform.
-ContextDef def_of(const Platform& platform) {
-    using Backend = ContextDef::Backend;
-    switch (platform.kind) {
-        case Platform::Kind::kDevice:
-            return {.backend = Backend::kDevice, .device = platform.device_index};
-        case Platform::Kind::kSurfaceless:
-            return {.backend = Backend::kSurfaceless, .device = {}};
-        case Platform::Kind::kDefault:
-            break;
-    }
-    return {.backend = Backend::kDefault, .device = {}};
-}
-
-}  // namespace
 
 struct Context::Impl : EglSession {
     explicit Impl(const Platform& from) : EglSession(from), platform(from.name) {}
@@ -36,28 +21,18 @@ struct Context::Impl : EglSession {
 };
 
 ContextDef ContextDef::parse(std::string_view text) {
-    ContextDef def;
+    constexpr std::array<std::string_view, 4> kNames{"auto", "device", "surfaceless", "default"};
+    if (const auto name = std::ranges::find(kNames, text); name != kNames.end())
+        return {.backend = static_cast<Backend>(name - kNames.begin())};
     constexpr std::string_view kDevicePrefix = "device:";
-    if (text == "auto") {
-        def.backend = Backend::kAuto;
-    } else if (text == "surfaceless") {
-        def.backend = Backend::kSurfaceless;
-    } else if (text == "default") {
-        def.backend = Backend::kDefault;
-    } else if (text == "device") {
-        def.backend = Backend::kDevice;
-    } else if (text.substr(0, kDevicePrefix.size()) == kDevicePrefix) {
-        def.backend = Backend::kDevice;
+    if (text.starts_with(kDevicePrefix)) {
         int index = -1;
-        const char* end = text.data() + text.size();
+        const char* const end = text.data() + text.size();
         const auto [stop, status] = std::from_chars(text.data() + kDevicePrefix.size(), end, index);
-        if (status == std::errc{} && stop == end && index >= 0) def.device = index;
+        if (status == std::errc{} && stop == end && index >= 0)
+            return {.backend = Backend::kDevice, .device = index};
     }
-    const bool known = def.backend != Backend::kAuto || text == "auto";
-    const bool has_index = def.device || def.backend != Backend::kDevice || text == "device";
-    if (!known || !has_index)
-        throw_usage("backend \"{}\" is unknown; use auto, device, device:N, surfaceless or default", text);
-    return def;
+    throw_usage("backend \"{}\" is unknown; use auto, device, device:N, surfaceless or default", text);
 }
 
 Context::Context(const ContextDef& def) {
@@ -154,7 +129,7 @@ std::vector<Attempt> probe_contexts(const std::function<void(const Context&)>& c
     for (const Platform& platform : platforms) {
         Attempt& attempt = attempts.emplace_back(Attempt{platform.name, std::nullopt, "", ExitCode::kOk});
         try {
-            if (before) before(def_of(platform));
+            if (before) before(platform.def);
             const Context context(platform);
             attempt.info = context.info();
             if (check) check(context);

@@ -20,8 +20,9 @@ struct Platform;
 struct ContextDef {
     enum class Backend { kAuto, kDevice, kSurfaceless, kDefault };
     Backend backend = Backend::kAuto;
-    std::optional<int> device;  ///< for kDevice: index into EGL's device list; nullopt: the first that works
-    bool require_gpu = false;   ///< refuse renderers on the CPU
+    /// For kDevice: index into EGL's device list; nullopt: the first that works.
+    std::optional<int> device = {};
+    bool require_gpu = false;  ///< refuse renderers on the CPU
 
     /// Reads "auto", "device", "device:N", "surfaceless" or "default". Throws corda::Error (kUsage).
     static ContextDef parse(std::string_view text);

@@ -98,7 +98,8 @@ std::vector<Platform> list_devices() {
         return {};
     std::vector<Platform> platforms;
     for (int i = 0; i < count; ++i) {
-        platforms.push_back({Platform::Kind::kDevice, device_name(devices[i], i), i, devices[i]});
+        platforms.push_back(
+            {{.backend = ContextDef::Backend::kDevice, .device = i}, device_name(devices[i], i), devices[i]});
     }
     std::stable_partition(platforms.begin(), platforms.end(),
                           [](const Platform& platform) { return !is_software_device(platform.device); });
@@ -152,15 +153,14 @@ std::vector<Platform> list_platforms(const ContextDef& def) {
     std::vector<Platform> platforms;
     if (def.backend == Backend::kAuto || def.backend == Backend::kDevice) platforms = list_devices();
     if (def.device) {
-        std::erase_if(platforms,
-                      [&](const Platform& platform) { return platform.device_index != *def.device; });
+        std::erase_if(platforms, [&](const Platform& platform) { return platform.def.device != def.device; });
     }
     const bool automatic = def.backend == Backend::kAuto;
     if (automatic || def.backend == Backend::kSurfaceless) {
-        platforms.push_back({Platform::Kind::kSurfaceless, "EGL surfaceless (Mesa)", -1, nullptr});
+        platforms.push_back({{.backend = Backend::kSurfaceless}, "EGL surfaceless (Mesa)"});
     }
     if (automatic || def.backend == Backend::kDefault) {
-        platforms.push_back({Platform::Kind::kDefault, "EGL default display", -1, nullptr});
+        platforms.push_back({{.backend = Backend::kDefault}, "EGL default display"});
     }
     return platforms;
 }
@@ -182,21 +182,17 @@ EglSession::~EglSession() {
 }
 
 void EglSession::open_display(const Platform& platform) {
-    switch (platform.kind) {
-        case Platform::Kind::kDevice:
-            display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, platform.device, nullptr);
-            break;
-        case Platform::Kind::kSurfaceless:
-            if (!has_client_extension("EGL_EXT_platform_base") ||
-                !has_client_extension("EGL_MESA_platform_surfaceless") ||
-                !has_function("eglGetPlatformDisplayEXT")) {
-                throw Error(ExitCode::kNoGl, "this EGL library has no EGL_MESA_platform_surfaceless");
-            }
-            display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
-            break;
-        case Platform::Kind::kDefault:
-            display_ = eglGetDisplay(EGL_DEFAULT_DISPLAY);
-            break;
+    using Backend = ContextDef::Backend;
+    if (platform.def.backend == Backend::kDevice) {
+        display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, platform.device, nullptr);
+    } else if (platform.def.backend == Backend::kSurfaceless) {
+        if (!has_client_extension("EGL_EXT_platform_base") ||
+            !has_client_extension("EGL_MESA_platform_surfaceless") ||
+            !has_function("eglGetPlatformDisplayEXT"))
+            throw Error(ExitCode::kNoGl, "this EGL library has no EGL_MESA_platform_surfaceless");
+        display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
+    } else {
+        display_ = eglGetDisplay(EGL_DEFAULT_DISPLAY);
     }
     if (display_ == EGL_NO_DISPLAY) fail("getting the display");
     is_shared_ = is_of_host(display_);

@@ -12,10 +12,8 @@ namespace corda::gl {
 
 /// An EGL platform, or an EGL device, that this machine may offer a display for.
 struct Platform {
-    enum class Kind { kDevice, kSurfaceless, kDefault };
-    Kind kind = Kind::kDefault;
+    ContextDef def;  ///< that selects only this platform
     std::string name;
-    int device_index = -1;
     EGLDeviceEXT device = nullptr;
 };
 

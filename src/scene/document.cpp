@@ -80,6 +80,7 @@ class CancellableBuffer : public std::streambuf {
 }  // namespace
 
 std::size_t find_deep_key(std::string_view text) {
+    constexpr std::string_view kEndsOfKeys = "\n,=[]{}";
     int dots = 0;
     std::size_t i = 0;
     while (i < text.size()) {
@@ -94,17 +95,8 @@ std::size_t find_deep_key(std::string_view text) {
             case '.':
                 if (++dots >= kKeyParts) return i;
                 break;
-            case '\n':
-            case ',':
-            case '=':
-            case '[':
-            case ']':
-            case '{':
-            case '}':
-                dots = 0;
-                break;
             default:
-                break;
+                if (kEndsOfKeys.find(text[i]) != std::string_view::npos) dots = 0;
         }
         ++i;
     }

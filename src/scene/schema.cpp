@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <map>
 
 #include "corda/scene/readers.hpp"
@@ -52,27 +53,10 @@ constexpr std::string_view kColorWords =
     R"(such as "tomato", "#e8c07d", "#e8c07d80" (with alpha) or "transparent")";
 
 std::string kind_text(Kind kind) {
-    switch (kind) {
-        case Kind::kTable:
-            return "table";
-        case Kind::kTables:
-            return "list of tables";
-        case Kind::kBoolean:
-            return "true or false";
-        case Kind::kInteger:
-            return "integer";
-        case Kind::kNumber:
-            return "number";
-        case Kind::kChoice:
-            return "text";
-        case Kind::kColor:
-            return "colour";
-        case Kind::kText:
-            return "text";
-        case Kind::kFraction:
-            return "number or fraction as text";
-    }
-    return "";
+    constexpr std::array kTexts{"table",   "list of tables", "true or false",
+                                "integer", "number",         "text",
+                                "colour",  "text",           "number or fraction as text"};
+    return kTexts.at(static_cast<std::size_t>(kind));
 }
 
 std::string entries_text(const Key& key) {

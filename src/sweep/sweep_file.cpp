@@ -5,6 +5,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -25,6 +26,31 @@ using scene::described;
 using scene::Problems;
 
 constexpr double kMaxExactInteger = 9007199254740992.0;  // 2^53
+
+/// The numbers that a shape takes.
+struct ShapeRule {
+    bool (*is_sound)(double first, double second);
+    std::string_view remedy;
+};
+
+/// In the order of Shape.
+constexpr std::array<ShapeRule, 4> kShapeRules{{
+    {[](double least, double largest) { return least <= largest && std::isfinite(largest - least); },
+     "is [least, largest], two numbers, the smaller first, or two vectors of one length"},
+    {[](double least, double largest) {
+         return least >= std::numeric_limits<double>::min() && least <= largest &&
+                std::isfinite(largest / least);
+     },
+     "is [least, largest], two positive numbers or two vectors of one length"},
+    {[](double, double deviation) { return deviation > 0.0; },
+     "is [mean, standard deviation], the second positive, or two vectors of one length; bounds are min and "
+     "max"},
+    {[](double least, double largest) {
+         return least == std::floor(least) && largest == std::floor(largest) && least <= largest &&
+                std::max(std::abs(least), std::abs(largest)) <= kMaxExactInteger / 2;
+     },
+     "is [least, largest], two whole numbers, both included, or two vectors of one length"},
+}};
 
 Json json_of(const toml::node& node) {
     if (const auto* table = node.as_table()) {
@@ -251,9 +277,9 @@ class SweepReader {
             const bool is_read = ends != nullptr && ends->size() == 2 &&
                                  read_numbers(*ends->get(0), made->is_vector, made->first) &&
                                  read_numbers(*ends->get(1), made->is_vector, made->second) &&
-                                 made->first.size() == made->second.size();
-            if (!is_read || !is_sound(*made)) {
-                fail(*node, path, fmt::format("{} {}", kShapeNames[i], remedy_of(made->shape)));
+                                 std::ranges::equal(made->first, made->second, kShapeRules[i].is_sound);
+            if (!is_read) {
+                fail(*node, path, fmt::format("{} {}", kShapeNames[i], kShapeRules[i].remedy));
                 return std::nullopt;
             }
         }
@@ -280,47 +306,6 @@ class SweepReader {
         const auto* const list = node.as_array();
         return list != nullptr && !list->empty() && list->size() <= std::size_t{1} << 16U &&
                std::all_of(list->begin(), list->end(), add);
-    }
-
-    static bool is_sound(const Distribution& distribution) {
-        for (std::size_t i = 0; i < distribution.first.size(); ++i) {
-            const double first = distribution.first[i];
-            const double second = distribution.second[i];
-            switch (distribution.shape) {
-                case Shape::kUniform:
-                    if (!(first <= second) || !std::isfinite(second - first)) return false;
-                    break;
-                case Shape::kLogUniform:
-                    if (!(first >= std::numeric_limits<double>::min() && first <= second) ||
-                        !std::isfinite(second / first))
-                        return false;
-                    break;
-                case Shape::kNormal:
-                    if (!(second > 0.0)) return false;
-                    break;
-                case Shape::kInteger:
-                    if (first != std::floor(first) || second != std::floor(second) || !(first <= second) ||
-                        std::max(std::abs(first), std::abs(second)) > kMaxExactInteger / 2)
-                        return false;
-                    break;
-            }
-        }
-        return true;
-    }
-
-    static std::string_view remedy_of(Shape shape) {
-        switch (shape) {
-            case Shape::kUniform:
-                return "is [least, largest], two numbers, the smaller first, or two vectors of one length";
-            case Shape::kLogUniform:
-                return "is [least, largest], two positive numbers or two vectors of one length";
-            case Shape::kNormal:
-                return "is [mean, standard deviation], the second positive, or two vectors of one length; "
-                       "bounds are min and max";
-            case Shape::kInteger:
-                break;
-        }
-        return "is [least, largest], two whole numbers, both included, or two vectors of one length";
     }
 
     std::vector<double> read_bound(const toml::table& table, std::string_view key, double open,

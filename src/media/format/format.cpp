@@ -72,31 +72,14 @@ bool has_alpha_plane(const char* pixel_format) {
 bool is_of_choice(const char* pixel_format, PixelChoice pix) {
     const AVPixFmtDescriptor& descriptor = descriptor_of(pixel_format);
     const bool is_rgb = (descriptor.flags & AV_PIX_FMT_FLAG_RGB) != 0;
-    switch (pix) {
-        case PixelChoice::k420:
-            return !is_rgb && descriptor.log2_chroma_w == 1;
-        case PixelChoice::k444:
-            return !is_rgb && descriptor.log2_chroma_w == 0;
-        case PixelChoice::kRgba:
-            return is_rgb;
-        case PixelChoice::kAuto:
-            break;
-    }
-    return true;
+    if (pix == PixelChoice::kAuto) return true;
+    if (is_rgb || pix == PixelChoice::kRgba) return is_rgb && pix == PixelChoice::kRgba;
+    return descriptor.log2_chroma_w == (pix == PixelChoice::k420 ? 1 : 0);
 }
 
 const char* word_of(PixelChoice pix) {
-    switch (pix) {
-        case PixelChoice::k420:
-            return "420";
-        case PixelChoice::k444:
-            return "444";
-        case PixelChoice::kRgba:
-            return "rgba";
-        case PixelChoice::kAuto:
-            break;
-    }
-    return "auto";
+    constexpr std::array kWords{"auto", "420", "444", "rgba"};
+    return kWords.at(static_cast<std::size_t>(pix));
 }
 
 bool has_choice(const Codec& codec, PixelChoice pix) {
