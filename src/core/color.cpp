@@ -43,14 +43,7 @@ std::optional<Color> Color::parse(std::string_view text) {
 }
 
 std::string Color::text() const {
-    constexpr std::string_view kDigits = "0123456789abcdef";
-    std::string result = "#";
-    for (const std::uint8_t channel : {r, g, b, a}) {
-        if (result.size() == 7 && channel == 255) break;
-        result += kDigits[channel >> 4U];
-        result += kDigits[channel & 15U];
-    }
-    return result;
+    return fmt::format("#{:02x}{:02x}{:02x}{}", r, g, b, a == 255 ? "" : fmt::format("{:02x}", a));
 }
 
 }  // namespace corda

@@ -19,8 +19,7 @@ namespace corda {
 
 void check_path(const std::string& path) {
     if (path.find('\0') == std::string::npos) return;
-    throw Error(ExitCode::kUsage,
-                "'" + printable(path) + "' holds a NUL character, which no file name can; leave it out");
+    throw_usage("'{}' holds a NUL character, which no file name can; leave it out", printable(path));
 }
 
 FileHandle open_for_reading(const std::string& path) {
@@ -116,20 +115,17 @@ std::string_view hint_for_errno(int error_number, FileUse use) {
 void fail_file(std::string_view action, const std::string& path, int error_number) {
     // Only a pipe or a device makes a call wait for so long that a signal breaks it off.
     if (error_number == EINTR)
-        throw Error(ExitCode::kInterrupted,
-                    "interrupted while waiting to " + std::string(action) + " '" + path + "'");
+        throw_error(ExitCode::kInterrupted, "interrupted while waiting to {} '{}'", action, path);
     const std::string_view hint =
         hint_for_errno(error_number, action == "read" ? FileUse::kRead : FileUse::kWrite);
-    std::string message =
-        "cannot " + std::string(action) + " '" + path + "': " + std::generic_category().message(error_number);
-    if (!hint.empty()) message += "; " + std::string(hint);
     const bool is_temporary = error_number == EMFILE || error_number == ENFILE;
-    throw Error(is_temporary ? ExitCode::kTemporary : ExitCode::kIo, message);
+    throw_error(is_temporary ? ExitCode::kTemporary : ExitCode::kIo, "cannot {} '{}': {}{}{}", action, path,
+                std::generic_category().message(error_number), hint.empty() ? "" : "; ", hint);
 }
 
 void fail_busy(const std::string& what) {
-    throw Error(ExitCode::kIo,
-                "another render is writing " + what + "; wait for its end, or choose another name");
+    throw_error(ExitCode::kIo, "another render is writing {}; wait for its end, or choose another name",
+                what);
 }
 
 void make_folder(const std::string& path) {
@@ -195,8 +191,10 @@ TemporaryFolder::TemporaryFolder() {
     path_ = (std::filesystem::temp_directory_path(failure) / "corda-XXXXXX").string();
     if (!failure && mkdtemp(path_.data()) == nullptr) failure.assign(errno, std::generic_category());
     if (failure)
-        throw Error(ExitCode::kIo, "cannot make a folder for temporary files, '" + path_ + "': " +
-                                       failure.message() + "; set TMPDIR to a folder that can be written to");
+        throw_error(ExitCode::kIo,
+                    "cannot make a folder for temporary files, '{}': {}; set TMPDIR to a folder that can be "
+                    "written to",
+                    path_, failure.message());
 }
 
 TemporaryFolder::~TemporaryFolder() {

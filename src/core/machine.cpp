@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 
 namespace corda {
 namespace {
@@ -120,10 +120,10 @@ void require_address_space(std::uint64_t bytes, const std::string& what, std::ui
     const auto require = [&what](std::uint64_t needed, std::optional<std::uint64_t> left, const char* of,
                                  const char* limit) {
         if (!left || *left >= needed) return;
-        throw Error(ExitCode::kTemporary,
-                    what + " needs " + std::to_string((needed + (1U << 20U) - 1) >> 20U) + " MiB of " + of +
-                        ", and the limit of this process leaves " + std::to_string(*left >> 20U) +
-                        " MiB; raise the limit (" + limit + ")");
+        throw_error(
+            ExitCode::kTemporary,
+            "{} needs {} MiB of {}, and the limit of this process leaves {} MiB; raise the limit ({})", what,
+            (needed + (1U << 20U) - 1) >> 20U, of, *left >> 20U, limit);
     };
     require(bytes, address_space_left(), "address space", "ulimit -v");
     require(data_bytes != 0 ? data_bytes : bytes, data_left(), "data", "ulimit -d");

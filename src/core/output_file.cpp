@@ -6,16 +6,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
-#include <charconv>
 #include <filesystem>
 #include <random>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
-#include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 
 namespace corda {
 namespace {
@@ -65,7 +63,7 @@ std::string follow_links(std::string path) {
 }
 
 [[noreturn]] void fail_exists(const std::string& path) {
-    throw Error(ExitCode::kIo, "'" + path + "' exists; it is replaced only with force (--force)");
+    throw_error(ExitCode::kIo, "'{}' exists; it is replaced only with force (--force)", path);
 }
 
 /// The status of the file that `path` leads to; none if it is missing.
@@ -82,10 +80,7 @@ bool is_taken(const std::string& path) {
 }
 
 std::string random_text() {
-    std::array<char, 8> text{};
-    const auto [end, status] =
-        std::to_chars(text.data(), text.data() + text.size(), std::random_device{}(), 16);
-    return {text.data(), end};
+    return fmt::format("{:x}", std::random_device{}());
 }
 
 /// Renames unless `to` exists. Returns 0 or an errno value.
@@ -113,31 +108,27 @@ bool is_standard_output(const std::string& path) {
 void check_output(const std::string& path, const std::string& input, bool force, OutputKind kind) {
     check_path(path);
     if (kind == OutputKind::kStream && is_standard_output(path)) return;
-    if (fs::path(path).filename().empty()) {
-        throw Error(ExitCode::kUsage, "the output '" + path + "' names no file; give it a name");
-    }
+    if (fs::path(path).filename().empty()) throw_usage("the output '{}' names no file; give it a name", path);
     const std::string given_folder = folder_of(path).string();
     struct stat folder_status {};
     if (::stat(given_folder.c_str(), &folder_status) != 0) {
         if (errno != ENOENT) fail_file("write to the folder", given_folder, errno);
-        throw Error(ExitCode::kIo, "cannot write '" + path + "': the folder '" + given_folder +
-                                       "' does not exist; make it first");
+        throw_error(ExitCode::kIo, "cannot write '{}': the folder '{}' does not exist; make it first", path,
+                    given_folder);
     }
     if (!S_ISDIR(folder_status.st_mode)) fail_file("write to the folder", given_folder, ENOTDIR);
     if (const auto status = status_of(path)) {
         if (S_ISDIR(status->st_mode)) fail_file("write", path, EISDIR);
         if (!S_ISREG(status->st_mode)) {
             if (kind == OutputKind::kStream) return;
-            throw Error(ExitCode::kIo,
-                        "cannot write '" + path +
-                            "': it is a device or a pipe, and this format needs an ordinary file; "
-                            "choose another name");
+            throw_error(ExitCode::kIo,
+                        "cannot write '{}': it is a device or a pipe, and this format needs an ordinary "
+                        "file; choose another name",
+                        path);
         }
         std::error_code ignored;
-        if (!input.empty() && fs::equivalent(path, input, ignored)) {
-            throw Error(ExitCode::kUsage,
-                        "the output '" + path + "' would replace the input; choose another name");
-        }
+        if (!input.empty() && fs::equivalent(path, input, ignored))
+            throw_usage("the output '{}' would replace the input; choose another name", path);
     }
     if (!force && is_taken(path)) fail_exists(path);
     const std::string folder = folder_of(force ? follow_links(path) : path).string();
@@ -193,8 +184,8 @@ void OutputFile::find_target() {
 
 OutputFile::OutputFile(InMemory) : descriptor_(::memfd_create("output", MFD_CLOEXEC)) {
     if (!descriptor_)
-        throw Error(ExitCode::kTemporary,
-                    "cannot make a file in memory: " + std::generic_category().message(errno));
+        throw_error(ExitCode::kTemporary, "cannot make a file in memory: {}",
+                    std::generic_category().message(errno));
     temporary_ = "/proc/self/fd/" + std::to_string(descriptor_.get());
 }
 
@@ -309,12 +300,10 @@ void OutputFile::commit() {
     close();
     if (temporary_.empty()) return;
     const int status = is_blocked ? EEXIST : rename_to(target_);
-    if (status == EEXIST) {
-        throw Error(ExitCode::kIo,
-                    "'" + path_ + "' appeared while it was being written and is not replaced" +
-                        (options_.force ? ", because it is no ordinary file" : " without --force") +
-                        "; the new file is '" + keep() + "'");
-    }
+    if (status == EEXIST)
+        throw_error(ExitCode::kIo,
+                    "'{}' appeared while it was being written and is not replaced{}; the new file is '{}'",
+                    path_, options_.force ? ", because it is no ordinary file" : " without --force", keep());
     if (status != 0) fail_file("rename '" + temporary_ + "' to", path_, status);
     temporary_.clear();
     sync_folder_of(target_);

@@ -26,13 +26,21 @@ template <class... Values>
 }
 
 /// `bytes`, which may be anything, as UTF-8: each byte that is not part of a character becomes its number in
-/// hexadecimal, e.g. "\xe9". U+FFFE and U+FFFF, which XML does not have, count as none.
+/// hexadecimal, e.g. "\xe9".
 [[nodiscard]] std::string utf8(std::string_view bytes);
 
 /// The same with each byte of a control character as its number, e.g. "\x1b": one line that a terminal, a
 /// title and XML can show. Line separators and what turns the direction of text (U+202E) count as such.
 /// Printable text stays as it is.
 [[nodiscard]] std::string printable(std::string_view bytes);
+
+/// The character at the start of a text.
+struct Character {
+    std::size_t bytes = 0;  ///< 0 if there is none: the first byte is not UTF-8
+    std::uint32_t number = 0;
+};
+/// Requires a text that is not empty.
+[[nodiscard]] Character first_character(std::string_view text);
 
 /// True for a byte of UTF-8 within a character.
 [[nodiscard]] constexpr bool is_continuation(char byte) {

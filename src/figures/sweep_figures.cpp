@@ -328,10 +328,7 @@ std::string write_sweep_sheet(const sweep::SweepDef& sweep, const std::string& f
         auto [x_px, y_px] = place(i);
         y_px += height_px;
         for (std::string& line : cells[i].lines) {
-            for (std::string kept = line; font.width_px(line, kTextPx) > kSidePx; line = kept + "…") {
-                while (is_continuation(kept.back())) kept.pop_back();
-                kept.pop_back();
-            }
+            line = font.shortened(std::move(line), kTextPx, kSidePx, "");
             font.write({x_px, y_px += kLinePx, kTextPx, Color{0, 0, 0}, line}, list);
         }
     }

@@ -38,30 +38,9 @@ namespace {
 
 /// Takes the first character off `rest`; U+FFFD for a byte that is not part of one.
 char32_t take_character(std::string_view& rest) {
-    constexpr char32_t kNone = 0xfffd;
-    const auto byte = [&rest](std::size_t i) { return static_cast<unsigned char>(rest[i]); };
-    const unsigned first = byte(0);
-    const std::size_t length = first < 0x80        ? 1
-                               : first >> 5U == 6  ? 2
-                               : first >> 4U == 14 ? 3
-                               : first >> 3U == 30 ? 4
-                                                   : 0;
-    bool is_whole = length > 0 && length <= rest.size();
-    char32_t character = length == 1 ? first : first & (0x7fU >> length);
-    for (std::size_t i = 1; is_whole && i < length; ++i) {
-        is_whole = byte(i) >> 6U == 2;
-        character = character << 6U | (byte(i) & 0x3fU);
-    }
-    rest.remove_prefix(is_whole ? length : 1);
-    return is_whole ? character : kNone;
-}
-
-/// Where the character that begins at byte `i` of a UTF-8 text ends.
-std::size_t end_of_character(std::string_view utf8, std::size_t i) {
-    constexpr unsigned kFollowing = 2;  // the first two bits of a continuation byte
-    do ++i;
-    while (i < utf8.size() && static_cast<unsigned char>(utf8[i]) >> 6U == kFollowing);
-    return i;
+    const Character first = first_character(rest);
+    rest.remove_prefix(std::max<std::size_t>(first.bytes, 1));
+    return first.bytes == 0 ? U'\xfffd' : char32_t{first.number};
 }
 
 void check_font(FT_Error error) {
@@ -252,7 +231,7 @@ std::string Font::shortened(std::string text, int size_px, int room_px, std::str
     int end = width_px(mark, size_px);
     std::size_t kept = 0;
     for (std::size_t next = 0; next < text.size(); kept = next) {
-        next = end_of_character(text, next);
+        next += std::max<std::size_t>(first_character(std::string_view(text).substr(next)).bytes, 1);
         end += width_px(std::string_view(text).substr(kept, next - kept), size_px);
         if (end > room_px) break;
     }
