@@ -70,8 +70,7 @@ void tell(const Console& console, const GoldenOptions& options, const golden::Su
     const std::int64_t stale = result.count(Verdict::kStale);
     const std::int64_t invalid = result.count(Verdict::kInvalid);
     console.result(result.totals());
-    std::error_code none;
-    if (missing > 0 && !std::filesystem::exists(options.def.folder, none))
+    if (missing > 0 && !is_there(options.def.folder))
         console.warning(fmt::format("there is no folder '{}'; --update makes it", options.def.folder));
     else if (missing > 0)
         console.info("--update draws the missing pictures and keeps them");

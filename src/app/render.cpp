@@ -227,8 +227,7 @@ void report_rendered(const Console& console, bool is_verified, const Rendered& r
 void warn_of_other_pictures(const Console& console, const std::string& output, std::int64_t end) {
     if (media::find_ending(output).kind != media::FileKind::kPictures) return;
     const std::string next = media::picture_name(output, end);
-    std::error_code ignored;
-    if (std::filesystem::exists(next, ignored))
+    if (is_there(next))
         console.warning(fmt::format(
             "{} exists but is not part of this render, which ends before it; remove it and those after "
             "it before the pictures are used as a video",

@@ -46,6 +46,11 @@ std::string first_bytes(const std::string& path, std::size_t count) {
     return bytes;
 }
 
+bool is_there(const std::string& path) {
+    std::error_code ignored;
+    return std::filesystem::exists(path, ignored);
+}
+
 std::uintmax_t file_size(const std::string& path) {
     std::error_code failure;
     const std::uintmax_t bytes = std::filesystem::file_size(path, failure);

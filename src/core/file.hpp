@@ -31,6 +31,9 @@ void check_path(const std::string& path);
 /// The first `count` bytes of a file, or all that it has. Throws corda::Error (kIo).
 [[nodiscard]] std::string first_bytes(const std::string& path, std::size_t count);
 
+/// Whether a file or folder is there; false as well if the system does not tell.
+[[nodiscard]] bool is_there(const std::string& path);
+
 /// The size in bytes of an ordinary file. Throws corda::Error (kIo).
 [[nodiscard]] std::uintmax_t file_size(const std::string& path);
 /// All its bytes. Throws corda::Error (kIo).

@@ -22,11 +22,6 @@ std::string join(const std::string& folder, const std::string& name) {
     return (fs::path(folder) / name).string();
 }
 
-bool is_there(const std::string& path) {
-    std::error_code none;  // the reader reports the error
-    return fs::exists(path, none);
-}
-
 /// The hash of a file; empty if there is none.
 std::string hash_of(const std::string& path) {
     return is_there(path) ? hash_text(file_bytes(path)) : "";

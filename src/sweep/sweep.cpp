@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <utility>
 
 #include "corda/core/cancel.hpp"
+#include "corda/core/file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/workers.hpp"
 #include "corda/media/bytes.hpp"
@@ -74,9 +74,8 @@ void finish_folder(const SweepDef& sweep, const std::string& folder, RunResult& 
 
 /// Whether all shards seem to be there. Their indices are not read: each of many tasks asks for it.
 bool has_all_shards(const SweepDef& sweep, const std::string& folder) {
-    std::error_code ignored;
     std::int64_t shard = 0;
-    while (shard < shard_count(sweep) && std::filesystem::exists(index_path(folder, shard), ignored)) {
+    while (shard < shard_count(sweep) && is_there(index_path(folder, shard))) {
         check_cancelled();
         ++shard;
     }
@@ -133,10 +132,9 @@ void check_shard(const SweepDef& sweep, const std::string& folder, std::int64_t 
         throw_error(ExitCode::kMismatch, "'{}' {}", path, problem);
     };
     const auto index = find_index(sweep, folder, shard);
-    std::error_code ignored;
     if (!index)
-        fail(std::filesystem::exists(path, ignored) ? "does not fit its index; run the sweep again"
-                                                    : "is missing; run the sweep again");
+        fail(is_there(path) ? "does not fit its index; run the sweep again"
+                            : "is missing; run the sweep again");
     if (media::sha256_of_file(path) != index->at("sha256").get<std::string>())
         fail(
             "is damaged: its SHA-256 is another one than its index says; remove it, and run the sweep again");

@@ -184,8 +184,8 @@ std::int64_t Manifest::end_of(std::int64_t chunk) const {
 std::optional<Manifest> read_manifest(const std::string& folder) {
     constexpr const char* kRemedy = "it is damaged: start again (--force without --resume)";
     const std::string path = manifest_path(folder);
+    if (!is_there(path)) return std::nullopt;
     std::error_code ignored;
-    if (!fs::exists(path, ignored)) return std::nullopt;
     if (fs::symlink_status(path, ignored).type() != fs::file_type::regular)
         throw_error(ExitCode::kMismatch, "'{}' is no ordinary file; {}", path, kRemedy);
     try {
@@ -204,8 +204,7 @@ std::optional<Manifest> read_manifest(const std::string& folder) {
 }
 
 std::vector<ChunkFile> chunk_files(const std::string& folder) {
-    std::error_code ignored;
-    return fs::exists(folder, ignored) ? contents_of(folder).chunks : std::vector<ChunkFile>{};
+    return is_there(folder) ? contents_of(folder).chunks : std::vector<ChunkFile>{};
 }
 
 std::uint64_t bytes_of(const std::vector<ChunkFile>& files) {

@@ -111,10 +111,9 @@ class FolderSink : public VideoSink {
     [[nodiscard]] ChunkRun all_chunks() const {
         ChunkRun run;
         run.frames = frames_;
-        std::error_code ignored;
         for (const auto& [number, file] : there_) {
             const std::int64_t next = folder_.manifest().first_chunk() + std::ssize(run.chunks);
-            if (number != next || !std::filesystem::exists(file.path, ignored)) {
+            if (number != next || !is_there(file.path)) {
                 run.gap = next;
                 throw_error(ExitCode::kMismatch, "{} in '{}': --resume makes it again",
                             gap_text(run, folder_.manifest()), place());
@@ -135,8 +134,7 @@ class FolderSink : public VideoSink {
             work();
         } catch (const Error& error) {
             if (error.code() != ExitCode::kIo || (folder_.is_named() && frames_ == 0)) throw;
-            std::error_code ignored;
-            const bool is_taken = !output_.force && std::filesystem::exists(output_.path, ignored);
+            const bool is_taken = !output_.force && is_there(output_.path);
             const std::string kept =
                 folder_.is_named()
                     ? fmt::format("finished chunks are in '{}'; --resume{} continues it", folder_.path(),
@@ -268,10 +266,9 @@ void number_packets(const Chunk& chunk) {
 /// Refuses to replace existing files. The folder is made if there is none.
 void check_pictures(const std::string& pattern, const std::string& input, bool force, std::int64_t first,
                     std::int64_t end) {
-    const std::filesystem::path folder = std::filesystem::path(pattern).parent_path();
-    std::error_code ignored;
-    check_folder(folder.string());
-    if (!folder.empty() && !std::filesystem::exists(folder, ignored)) return;
+    const std::string folder = std::filesystem::path(pattern).parent_path().string();
+    check_folder(folder);
+    if (!folder.empty() && !is_there(folder)) return;
     for (std::int64_t k = first; k < end; ++k) check_output(picture_name(pattern, k), input, force);
 }
 
