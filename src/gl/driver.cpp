@@ -55,10 +55,7 @@ struct DriverUse {
 
 std::atomic<bool> is_faulty{false};
 
-DriverUse& driver_use() {
-    static DriverUse use;
-    return use;
-}
+DriverUse driver_use;
 
 /// Opens a library like libepoxy does, until the process ends; null if it cannot be loaded.
 void* library(const char* name) {
@@ -147,10 +144,7 @@ std::string set_llvmpipe_variables() {
 }
 
 /// The value of LP_NATIVE_VECTOR_WIDTH that prepare_driver() has removed.
-std::string& dropped_width() {
-    static std::string bits;
-    return bits;
-}
+std::string dropped_width;
 
 /// The variables that are set and may change a driver's behaviour, as "NAME=value", sorted.
 std::vector<std::string> variables_of_driver() {
@@ -236,20 +230,19 @@ bool has_libraries() {
 }
 
 void prepare_driver() {
-    const bool is_first = driver_use().process == 0;
+    const bool is_first = driver_use.process == 0;
     require_address_space(is_first ? kFirstContextBytes : kContextBytes, "OpenGL",
                           is_first ? kFirstContextData : kContextBytes);
     // Only once, because other threads may read the environment.
-    static const bool is_set = (dropped_width() = set_llvmpipe_variables(), true);
+    static const bool is_set = (dropped_width = set_llvmpipe_variables(), true);
     static_cast<void>(is_set);
     if (!has_libraries()) throw Error(ExitCode::kNoGl, "no usable OpenGL: " + missing_library());
     settle_glx();
 }
 
 void note_driver_use(bool is_safe_after_fork) {
-    DriverUse& use = driver_use();
-    if (use.process == 0 || !is_safe_after_fork) use.process = getpid();
-    use.is_safe_after_fork = use.is_safe_after_fork && is_safe_after_fork;
+    if (driver_use.process == 0 || !is_safe_after_fork) driver_use.process = getpid();
+    driver_use.is_safe_after_fork &= is_safe_after_fork;
 }
 
 void note_faulty_driver() {
@@ -261,8 +254,7 @@ bool is_driver_faulty() {
 }
 
 void require_driver_after_fork() {
-    const DriverUse& use = driver_use();
-    if (use.process == 0 || use.process == getpid() || use.is_safe_after_fork) return;
+    if (driver_use.process == 0 || driver_use.process == getpid() || driver_use.is_safe_after_fork) return;
     throw Error(
         ExitCode::kNoGl,
         "the parent process has drawn with threads or hardware that a forked process does not have; start "
@@ -272,7 +264,7 @@ void require_driver_after_fork() {
 
 std::string dropped_variable() {
     const auto lock = lock_driver();
-    return dropped_width().empty() ? "" : "LP_NATIVE_VECTOR_WIDTH=" + dropped_width();
+    return dropped_width.empty() ? "" : "LP_NATIVE_VECTOR_WIDTH=" + dropped_width;
 }
 
 std::string driver_variables() {

@@ -129,15 +129,12 @@ bool is_software_renderer(std::string renderer) {
 /// Displays that this library has initialised. EGL returns the same display to every caller for a platform,
 /// and terminating it would end the host application's contexts too. So the few displays stay initialised
 /// until the process ends; in Mesa, each initialisation after a termination also leaks 8 kB.
-std::vector<EGLDisplay>& own_displays() {
-    static std::vector<EGLDisplay> displays;
-    return displays;
-}
+std::vector<EGLDisplay> own_displays;
 
 /// True if the host application has initialised a display, which only then reports its version.
 bool is_of_host(EGLDisplay display) {
-    const std::vector<EGLDisplay>& own = own_displays();
-    return std::ranges::find(own, display) == own.end() && eglQueryString(display, EGL_VERSION) != nullptr;
+    return std::ranges::find(own_displays, display) == own_displays.end() &&
+           eglQueryString(display, EGL_VERSION) != nullptr;
 }
 
 /// True if llvmpipe draws without threads, which a forked child would lack.
@@ -197,7 +194,7 @@ void EglSession::open_display(const Platform& platform) {
     if (display_ == EGL_NO_DISPLAY) fail("getting the display");
     is_shared_ = is_of_host(display_);
     if (eglInitialize(display_, nullptr, nullptr) != EGL_TRUE) fail("eglInitialize");
-    if (!is_shared_) own_displays().push_back(display_);
+    if (!is_shared_) own_displays.push_back(display_);
 }
 
 void EglSession::create_context() {

@@ -37,19 +37,19 @@ class Calls {
         Scope() {
             if (has_ended()) never_return();
             {
-                const std::lock_guard lock(mutex());
-                ++count();
+                const std::lock_guard lock(mutex_);
+                ++count_;
             }
             state_ = PyEval_SaveThread();
         }
         ~Scope() {
-            while (has_given_up() && has_ended()) sleep_long();
+            while (has_given_up_ && has_ended()) sleep_long();
             PyEval_RestoreThread(state_);
             {
-                const std::lock_guard lock(mutex());
-                --count();
+                const std::lock_guard lock(mutex_);
+                --count_;
             }
-            ended().notify_all();
+            ended_.notify_all();
             if (has_ended()) never_return();
         }
 
@@ -58,22 +58,22 @@ class Calls {
     };
 
     /// True if another thread is ending the interpreter.
-    static bool has_ended() { return is_ending().load() && std::this_thread::get_id() != ending_thread(); }
+    static bool has_ended() { return is_ending_.load() && std::this_thread::get_id() != ending_thread_; }
 
     static void begin_end() {
         constexpr std::chrono::seconds kPatience{5};  // an encoder that hangs must not keep the process alive
-        ending_thread() = std::this_thread::get_id();
-        is_ending() = true;
+        ending_thread_ = std::this_thread::get_id();
+        is_ending_ = true;
         const py::gil_scoped_release release;
-        std::unique_lock lock(mutex());
-        has_given_up() = !ended().wait_for(lock, kPatience, [] { return count() <= 0; });
+        std::unique_lock lock(mutex_);
+        has_given_up_ = !ended_.wait_for(lock, kPatience, [] { return count_ <= 0; });
     }
 
     /// To be called in a forked child, where the calls of the parent's other threads do not exist.
     static void forget() {
-        new (&mutex()) std::mutex;
-        new (&ended()) std::condition_variable;
-        count() = 0;
+        new (&mutex_) std::mutex;
+        new (&ended_) std::condition_variable;
+        count_ = 0;
     }
 
   private:
@@ -85,32 +85,14 @@ class Calls {
         while (true) sleep_long();
     }
 
-    // Never destroyed: blocked threads outlive the static objects.
-    static std::mutex& mutex() {
-        static auto& mutex = *new std::mutex;
-        return mutex;
-    }
-    static std::condition_variable& ended() {
-        static auto& ended = *new std::condition_variable;
-        return ended;
-    }
-    static int& count() {
-        static int count = 0;
-        return count;
-    }
-    static std::atomic<bool>& is_ending() {
-        static std::atomic<bool> is_ending{false};
-        return is_ending;
-    }
+    // The first two are never destroyed: blocked threads outlive the static objects.
+    inline static std::mutex& mutex_ = *new std::mutex;
+    inline static std::condition_variable& ended_ = *new std::condition_variable;
+    inline static int count_ = 0;
+    inline static std::atomic<bool> is_ending_ = false;
     /// True if a call did not end in time, so that the interpreter ends without it.
-    static std::atomic<bool>& has_given_up() {
-        static std::atomic<bool> has_given_up{false};
-        return has_given_up;
-    }
-    static std::thread::id& ending_thread() {
-        static std::thread::id thread;
-        return thread;
-    }
+    inline static std::atomic<bool> has_given_up_ = false;
+    inline static std::thread::id ending_thread_;
 };
 
 /// Runs work without the interpreter's lock, and asks Python now and then: for Ctrl-C, and for the answer of
