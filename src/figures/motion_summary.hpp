@@ -30,7 +30,6 @@ struct Extreme {
     void include(const Extreme& other);
 };
 
-/// The curves of one body.
 struct BodyCurves {
     pipeline::TrackedParticle followed;
     CurvePoints path = {};   ///< x and y in m, relative to the system's origin

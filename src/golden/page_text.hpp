@@ -14,7 +14,6 @@ inline constexpr const char* kPageHead = R"html(<!DOCTYPE html>
 <body>
 )html";
 
-/// The style of the pictures.
 inline constexpr const char* kPicturesStyle = R"css(
 body { max-width: 80rem; }
 h2 { font-size: 1.1rem; margin: 0; padding: 0; border: 0; overflow-wrap: anywhere; }

@@ -9,7 +9,6 @@
 
 namespace corda::pipeline {
 
-/// The data of a scene's live plots.
 class LivePlotData {
   public:
     /// The scene and its system must outlive it.

@@ -65,7 +65,6 @@ class SceneRenderer : NonCopyable {
         view_.set_arrows(extents);
         overlay_.set_arrows(view_.arrows().pixels_per_unit(), extents.largest());
     }
-    /// Sets the data of the live plots.
     void set_plots(std::span<const view::PlotData> data) { overlay_.set_plots(data, view_.body_colors()); }
     /// Lower bound on the scale of the camera that fit() returns for a motion within `bounds`.
     [[nodiscard]] double largest_pixels_per_metre(const MotionBounds& bounds) const;

@@ -15,7 +15,6 @@ namespace corda::render {
 /// arithmetic: between two levels of a channel, a fixed dither pattern of 8 x 8 pixels mixes both.
 void write_ground_row(const Ground& ground, int y, int width, int height, std::uint8_t* rgba);
 
-/// All rows of a ground.
 class GroundRows {
   public:
     /// Pixels repeat along a row with this period.
@@ -27,7 +26,6 @@ class GroundRows {
     [[nodiscard]] const Ground& ground() const { return ground_; }
     /// One period of pixels, starting at the left edge.
     [[nodiscard]] const Row& row(int y) const { return rows_[static_cast<std::size_t>(y)]; }
-    /// Writes the ground to a part of an image.
     void write(const PixelRect& part, Image& image) const;
 
   private:

@@ -173,7 +173,6 @@ class Pdf : public VectorPage {
         }
     }
 
-    /// Writes a text in one font.
     void write(const view::Text& text, cairo_font_face_t* face) {
         cairo_t* const cairo = cairo_.get();
         const std::string& utf8 = text.utf8;

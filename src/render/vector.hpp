@@ -18,7 +18,6 @@ struct Stroke {
     std::vector<std::vector<view::PixelPoint>> lines = {};
 };
 
-/// The strokes of a layer.
 struct LayerStrokes {
     std::vector<Stroke> halos;
     std::vector<Stroke> lines;

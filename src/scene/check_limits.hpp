@@ -7,7 +7,6 @@
 
 namespace corda::scene {
 
-/// Size of the bodies of a scene.
 struct SceneSize {
     std::vector<std::optional<BodySize>> bodies;  ///< ropes, then nets; empty if not known
     bool has_bars = false;                        ///< whether the bars of all bodies are known

@@ -71,7 +71,6 @@ void check_sum(const std::vector<TableReader>& ropes) {
     }
 }
 
-/// Adds the copies of a rope after it.
 void add_copies(const toml::table& table, const TableReader& rope, Problems& problems, toml::array& ropes) {
     const CopiesDef copies = copies_of(rope);
     ShapeDef shape;

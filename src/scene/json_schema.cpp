@@ -46,7 +46,6 @@ Json words_json(const Type& type) {
     return words;
 }
 
-/// One value.
 Json value_json(const Type& type) {
     Json json;
     switch (type.kind) {

@@ -108,7 +108,6 @@ struct DefProblem {
 /// Golden times that do not increase, and pictures that are too large.
 [[nodiscard]] std::vector<DefProblem> problems_of(const GoldenDef& golden);
 
-/// The number of particles and bars of a body.
 struct BodySize {
     std::int64_t particles = 0;
     std::int64_t bars = 0;

@@ -92,7 +92,6 @@ class TableReader {
     [[nodiscard]] std::optional<Value> find(std::string_view key) const;
     [[nodiscard]] bool has(std::string_view key) const { return table_->contains(key); }
 
-    /// Whether there is no problem with a key.
     [[nodiscard]] bool is_sound(std::string_view key) const { return problems_->is_sound(path_of(key)); }
 
     /// Whether the file has a key, be it bad or misspelt.

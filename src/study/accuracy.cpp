@@ -78,7 +78,6 @@ report::Table short_table(const std::vector<Measured>& cases) {
     return table;
 }
 
-/// Runs a method against the reference of the problem.
 AccuracyRow compare_with_reference(const AccuracyCase& given, const AccuracyMethod& method,
                                    const Timing& timing) {
     const Measurement run = measure(given.problem, method.method, method.name, 0.0, timing);

@@ -57,7 +57,6 @@ void add_watched(const std::string& name, const char* method_name, const RopeDef
                  const MethodDef& method, const Limits& limits, HardCase::Kind kind,
                  std::vector<HardCase>& cases);
 
-/// The chapter "Hard cases".
 [[nodiscard]] ChapterWork hard_cases_work(const StudyDef& def);
 
 }  // namespace corda::study

@@ -45,7 +45,6 @@ using OnChapter = std::function<void(const report::Chapter&)>;
 /// The chapter "The source report's findings" (section 1 of src/sim/README.md): a measurement of each.
 [[nodiscard]] ChapterWork findings_work(const StudyDef& def);
 
-/// How a study times its runs.
 [[nodiscard]] Timing study_timing(bool quick);
 
 /// A study that has been checked and is ready to run.

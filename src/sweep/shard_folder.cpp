@@ -42,7 +42,6 @@ bool is_sweep_file(const std::string& name) {
     return name == kManifestName || name == kMetadataName || shard_of(name).has_value();
 }
 
-/// The files of a sweep's names in a folder.
 std::vector<std::string> sweep_files(const std::string& folder) {
     std::vector<std::string> names;
     std::error_code failure;

@@ -55,7 +55,6 @@ void mark_incomplete(const SweepDef& sweep, const std::string& folder);
 /// Throws kUsage if there is a shard file beyond the last one.
 void refuse_surplus_shards(const SweepDef& sweep, const std::string& folder);
 
-/// A sample as its files and its row in the index.
 struct PackedSample {
     Json row;
     std::vector<std::pair<std::string, std::string>> files;  ///< name and bytes, in the order of the tar

@@ -14,7 +14,6 @@
 
 namespace corda::view {
 
-/// A point of a curve at one time.
 struct CurvePoint {
     double time_s = 0.0;
     double x = 0.0;

@@ -14,7 +14,6 @@ namespace corda::view {
 /// are.
 [[nodiscard]] std::string translated(std::string_view english, Language language);
 
-/// The decimal sign of a language.
 [[nodiscard]] constexpr char decimal_sign(Language language) {
     return language == Language::kEnglish ? '.' : ',';
 }

@@ -253,7 +253,6 @@ Manifest manifest_of(const CheckedVideo& output, const VideoMetadata& metadata) 
             .comment = comment.dump()};
 }
 
-/// Stamps packets with the numbers of their frames.
 void number_packets(const Chunk& chunk) {
     for (std::int64_t frame = 0; const Packet& packet : chunk.packets) {
         if (packet->pts != frame)

@@ -10,7 +10,6 @@
 
 namespace corda::sim {
 
-/// The highest order of a ChainSeries.
 inline constexpr std::size_t kMaxSeriesOrder = 20;
 
 /// Links of a block, on which a ChainSeries works together.

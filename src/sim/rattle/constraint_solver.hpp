@@ -26,7 +26,6 @@ struct Motion {
     std::vector<double> vx_lost_m_s;
     std::vector<double> vy_lost_m_s;
 
-    /// The motion at the start of a system.
     [[nodiscard]] static Motion start_of(const System& system);
 };
 

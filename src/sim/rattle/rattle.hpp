@@ -90,7 +90,6 @@ class Rattle final : public Solver {
     };
     static constexpr int kHistory = 3;
 
-    /// Advances the grid by one step.
     [[nodiscard]] bool step();
     /// Advances the grid, which is near a line of bars, from the point before it past the line.
     [[nodiscard]] bool step_over_line();
