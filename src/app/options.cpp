@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <charconv>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
@@ -53,21 +52,12 @@ void warn_of_unseen_texts(const Console& console, const Scene& scene) {
 /// So many pictures are a video.
 constexpr std::int64_t kMaxTimes = 100'000;
 
-/// Reads a whole number into `frame`; false for any other text.
-template <typename Frame>
-bool parse_frame(std::string_view text, Frame& frame) {
-    std::int64_t value = 0;
-    const auto [stop, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-    frame = value;
-    return status == std::errc{} && stop == text.data() + text.size();
-}
-
 /// The frames that a word of `--frame` names.
 RequestedFrames frames_of(const std::string& word, const Scene& scene) {
     const std::int64_t count = scene.video.scene_rate().frame_count(scene.world.duration_s);
     RequestedFrames range;
-    if (parse_frame(word, range.first)) {
-        range.end = range.first + (range.first < count ? 1 : 0);
+    if (const auto frame = whole_number<std::int64_t>(word)) {
+        range = {*frame, *frame + (*frame < count ? 1 : 0)};
     } else if (const auto parsed = parse_frames(word)) {
         range = *parsed;
     } else {
@@ -300,12 +290,12 @@ Shard parse_shard(const std::string& text) {
 }
 
 std::optional<RequestedFrames> parse_frames(std::string_view text) {
-    RequestedFrames range;
     const auto colon = text.find(':');
-    const bool is_range = colon != std::string_view::npos &&
-                          (colon == 0 || parse_frame(text.substr(0, colon), range.first)) &&
-                          (colon + 1 == text.size() || parse_frame(text.substr(colon + 1), range.end));
-    return is_range ? std::optional(range) : std::nullopt;
+    if (colon == std::string_view::npos) return std::nullopt;
+    const auto first = whole_number<std::int64_t>(text.substr(0, colon));
+    const auto end = whole_number<std::int64_t>(text.substr(colon + 1));
+    const bool is_range = (first || colon == 0) && (end || colon + 1 == text.size());
+    return is_range ? std::optional(RequestedFrames{first.value_or(0), end}) : std::nullopt;
 }
 
 void TimeOptions::add_to(CLI::App& command) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstddef>
 #include <string>
 
@@ -33,11 +32,9 @@ std::optional<Color> Color::parse(std::string_view text) {
     if (text.size() != 7 && text.size() != 9) return std::nullopt;
     std::array<std::uint8_t, 4> channels{0, 0, 0, 255};
     for (std::size_t i = 0; 2 * i + 1 < text.size(); ++i) {
-        const char* begin = text.data() + 1 + 2 * i;
-        unsigned value = 0;
-        const auto [stop, status] = std::from_chars(begin, begin + 2, value, 16);
-        if (status != std::errc{} || stop != begin + 2) return std::nullopt;
-        channels[i] = static_cast<std::uint8_t>(value);
+        const auto value = whole_number<std::uint8_t>(text.substr(1 + 2 * i, 2), 16);
+        if (!value) return std::nullopt;
+        channels[i] = *value;
     }
     return Color{channels[0], channels[1], channels[2], channels[3]};
 }

@@ -1,8 +1,9 @@
 #include "corda/core/rational.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <numeric>
+
+#include "corda/core/text.hpp"
 
 namespace corda {
 namespace {
@@ -10,11 +11,8 @@ namespace {
 constexpr double kFrameTolerance = 1e-9;  // relative to the frame number, at least to one frame
 
 std::optional<std::int64_t> parse_part(std::string_view text) {
-    std::int64_t value = 0;
-    const char* end = text.data() + text.size();
-    const auto [stop, status] = std::from_chars(text.data(), end, value);
-    if (status != std::errc{} || stop != end || value < 0 || value > Rational::kMaxPart) return std::nullopt;
-    return value;
+    const auto value = whole_number<std::int64_t>(text);
+    return value && *value >= 0 && *value <= Rational::kMaxPart ? value : std::nullopt;
 }
 
 double tolerance_at(double frames) {

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "corda/core/basics.hpp"
@@ -56,6 +58,15 @@ struct Character {
 
 /// The 64-bit FNV-1a hash of some bytes (by Fowler, Noll and Vo), as 16 hexadecimal digits.
 [[nodiscard]] std::string hash_text(std::string_view bytes);
+
+/// The whole number that all of a text is; std::nullopt for any other text.
+template <class Number>
+[[nodiscard]] std::optional<Number> whole_number(std::string_view text, int base = 10) {
+    Number number = 0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, status] = std::from_chars(text.data(), end, number, base);
+    return status == std::errc{} && stop == end ? std::optional(number) : std::nullopt;
+}
 
 /// "1 bar", "2 bars".
 [[nodiscard]] std::string counted(std::int64_t count, const std::string& what);

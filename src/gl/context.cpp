@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
 #include <epoxy/egl.h>
 #include <fmt/format.h>
@@ -26,11 +25,8 @@ ContextDef ContextDef::parse(std::string_view text) {
         return {.backend = static_cast<Backend>(name - kNames.begin())};
     constexpr std::string_view kDevicePrefix = "device:";
     if (text.starts_with(kDevicePrefix)) {
-        int index = -1;
-        const char* const end = text.data() + text.size();
-        const auto [stop, status] = std::from_chars(text.data() + kDevicePrefix.size(), end, index);
-        if (status == std::errc{} && stop == end && index >= 0)
-            return {.backend = Backend::kDevice, .device = index};
+        const auto index = whole_number<int>(text.substr(kDevicePrefix.size()));
+        if (index && *index >= 0) return {.backend = Backend::kDevice, .device = *index};
     }
     throw_usage("backend \"{}\" is unknown; use auto, device, device:N, surfaceless or default", text);
 }

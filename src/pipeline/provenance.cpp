@@ -1,7 +1,6 @@
 #include "corda/pipeline/provenance.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -71,11 +70,9 @@ std::string hex_of(const std::vector<double>& values) {
 std::vector<double> from_hex(std::string_view text) {
     std::vector<double> values;
     for (; !text.empty(); text.remove_prefix(kDigits)) {
-        std::uint64_t bits = 0;
-        const char* const begin = text.data();
-        const auto [end, failure] = std::from_chars(begin, begin + std::min(text.size(), kDigits), bits, 16);
-        values.push_back(std::bit_cast<double>(bits));
-        if (failure != std::errc() || end != begin + kDigits || !std::isfinite(values.back()))
+        const auto bits = whole_number<std::uint64_t>(text.substr(0, kDigits), 16);
+        values.push_back(std::bit_cast<double>(bits.value_or(0)));
+        if (text.size() < kDigits || !bits || !std::isfinite(values.back()))
             throw Error(ExitCode::kUsage, "its positions are not what corda writes");
     }
     return values;
@@ -266,9 +263,8 @@ PngTexts texts_in(const PngInfo& info) {
 
 /// A picture of a sequence.
 std::optional<PictureOrigin> frame_of_sequence(const std::string& number) {
-    std::int64_t frame = 0;
-    const auto [stop, status] = std::from_chars(number.data(), number.data() + number.size(), frame);
-    if (status != std::errc{} || stop != number.data() + number.size()) return std::nullopt;
+    const auto frame = whole_number<std::int64_t>(number);
+    if (!frame) return std::nullopt;
     return PictureOrigin{.command = "frame", .times = {{frame, 0.0}}};
 }
 

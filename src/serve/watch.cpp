@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <exception>
 #include <new>
@@ -83,9 +82,7 @@ std::vector<std::string> plan_lines(Film& film) {
 
 /// -1 for a text that is no number.
 std::int64_t number_of(std::string_view text) {
-    std::int64_t number = 0;
-    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
-    return status == std::errc{} && end == text.data() + text.size() ? number : -1;
+    return whole_number<std::int64_t>(text).value_or(-1);
 }
 
 std::int64_t number_in(const Request& request, std::string_view name) {
