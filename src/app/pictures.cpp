@@ -256,8 +256,7 @@ std::string name_of(const RequestedTime& time, const Scene& scene) {
 std::vector<Still> list_stills(const std::vector<RequestedTime>& times, const Scene& scene) {
     std::vector<Still> stills;
     for (const RequestedTime& time : times) stills.push_back({time, name_of(time, scene)});
-    const auto same =
-        std::ranges::adjacent_find(stills, [](const Still& a, const Still& b) { return a.path == b.path; });
+    const auto same = std::ranges::adjacent_find(stills, {}, &Still::path);
     if (same != stills.end()) throw_usage("two stills would both be {}; ask for each time once", same->path);
     return stills;
 }
@@ -337,8 +336,8 @@ ExitCode write_strobe(const Console& console, FigureOptions options) {
     options.take_origin(console, "strobe");
     const Scene scene = options.load(console);
     std::vector<RequestedTime> times = options.times.list(scene);
-    const auto is_same = [](const RequestedTime& a, const RequestedTime& b) { return a.time_s == b.time_s; };
-    times.erase(std::unique(times.begin(), times.end(), is_same), times.end());  // one pose, one label
+    const auto again = std::ranges::unique(times, {}, &RequestedTime::time_s);
+    times.erase(again.begin(), again.end());  // one pose, one label
     FigureDef def;
     for (const RequestedTime& time : times) def.times_s.push_back(time.time_s);
     return options.write_one(console, scene, times, def);

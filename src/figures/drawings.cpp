@@ -33,8 +33,7 @@ constexpr int kStills = 5;
 std::optional<double> first_turn_s(const CurvePoints& path) {
     constexpr double kFarEnough = 0.25;
     if (path.size() < 3) return std::nullopt;
-    const auto by_x = [](const view::CurvePoint& a, const view::CurvePoint& b) { return a.x < b.x; };
-    const auto [left, right] = std::ranges::minmax_element(path, by_x);
+    const auto [left, right] = std::ranges::minmax_element(path, {}, &view::CurvePoint::x);
     const double enough_m = kFarEnough * (right->x - left->x);
     for (std::size_t i = 1; i + 1 < path.size(); ++i) {
         const double before = path[i].x - path[i - 1].x;

@@ -115,7 +115,7 @@ std::vector<std::string> series_keys(const sweep::SweepDef& sweep, const SweepCo
         if (const auto* const choice = std::get_if<sweep::Choice>(&varied.values);
             choice && varied.key != x.name && choice->values.size() > 1)
             choices.emplace_back(choice->values.size(), varied.key);
-    std::ranges::stable_sort(choices, [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::ranges::stable_sort(choices, {}, [](const auto& choice) { return choice.first; });
     std::vector<std::string> keys;
     std::size_t series = 1;
     for (const auto& [count, key] : choices)

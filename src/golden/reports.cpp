@@ -139,7 +139,7 @@ std::string markdown(const SuiteResult& result) {
     std::vector<const Checked*> failed;
     for (const Checked& picture : result.pictures)
         if (picture.failed()) failed.push_back(&picture);
-    std::ranges::stable_sort(failed, [](const Checked* a, const Checked* b) { return a->group < b->group; });
+    std::ranges::stable_sort(failed, {}, &Checked::group);
     int rows = 0;
     for (std::size_t i = 0; i < failed.size() && rows < kMaxRows; ++i, ++rows) {
         const Checked& picture = *failed[i];

@@ -102,8 +102,7 @@ void refuse_double_bars(const Value& list, const std::vector<NetBar>& bars) {
     for (const NetBar& bar : bars)
         pairs.push_back({std::min(bar.a, bar.b), std::max(bar.a, bar.b), pairs.size()});
     std::ranges::stable_sort(pairs, {}, &Pair::key);
-    const auto same =
-        std::ranges::adjacent_find(pairs, [](const Pair& a, const Pair& b) { return a.key() == b.key(); });
+    const auto same = std::ranges::adjacent_find(pairs, {}, &Pair::key);
     if (same == pairs.end()) return;
     list.at((same + 1)->place)
         .add_problem(fmt::format("particles {} and {} are joined already, by bars[{}]; remove one", same->low,

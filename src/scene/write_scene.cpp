@@ -71,11 +71,8 @@ template <class Shape, class Body>
 bool gives(const Shape& shape, const Body& body) {
     Body made;
     place(shape, made);
-    const auto is_same_bar = [](const NetBar& a, const NetBar& b) {
-        return a.a == b.a && a.b == b.b && a.is_real == b.is_real;
-    };
     if constexpr (std::is_same_v<Body, NetDef>) {
-        if (!std::ranges::equal(made.bars, body.bars, is_same_bar)) return false;
+        if (made.bars != body.bars) return false;
     }
     return are_same(made.origin_m, body.origin_m) &&
            std::ranges::equal(made.points_m, body.points_m, are_same);

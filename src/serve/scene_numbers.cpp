@@ -26,12 +26,7 @@ class Collector {
   public:
     std::vector<Found> collect(const toml::table& document) {
         add_table(document, "", "");
-        std::ranges::sort(found_, [](const Found& a, const Found& b) {
-            const auto place = [](const Found& its) {
-                return std::pair(its.region.begin.line, its.region.begin.column);
-            };
-            return place(a) < place(b);
-        });
+        std::ranges::sort(found_, {}, [](const Found& its) { return its.region.begin; });
         return std::move(found_);
     }
 

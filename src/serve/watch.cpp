@@ -326,10 +326,9 @@ void Watch::keep(std::int64_t k, Picture picture) {
     picture_bytes_ += picture.png.size();
     pictures_.insert_or_assign(k, std::move(picture));
     // One that a request waits for stays until it is taken.
-    const auto rank = [&](std::int64_t frame) { return is_awaited(frame) ? -1 : distance(frame); };
+    const auto rank = [&](const auto& entry) { return is_awaited(entry.first) ? -1 : distance(entry.first); };
     while (picture_bytes_ > def_.picture_bytes && pictures_.size() > 1) {
-        const auto last = std::ranges::max_element(
-            pictures_, [&](const auto& a, const auto& b) { return rank(a.first) < rank(b.first); });
+        const auto last = std::ranges::max_element(pictures_, {}, rank);
         if (is_awaited(last->first)) break;
         picture_bytes_ -= last->second.png.size();
         pictures_.erase(last);

@@ -86,6 +86,8 @@ struct NetBar {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
     bool is_real = true;  ///< false: it stiffens the net and is not part of it (a diagonal)
+
+    friend bool operator==(const NetBar&, const NetBar&) = default;
 };
 
 /// Particles and bars in any graph, e.g. a cloth.

@@ -199,10 +199,7 @@ class SweepReader {
                         "no key varies; give [vary] with keys of the scene and their values");
         std::vector<const toml::key*> keys;  // in the order of the file
         for (const auto& [key, node] : *vary) keys.push_back(&key);
-        std::ranges::sort(keys, [](const toml::key* a, const toml::key* b) {
-            const auto place = [](const toml::source_position& at) { return std::pair(at.line, at.column); };
-            return place(a->source().begin) < place(b->source().begin);
-        });
+        std::ranges::sort(keys, {}, [](const toml::key* key) { return key->source().begin; });
         for (const toml::key* const key : keys) read_varied(*key, *vary->get(key->str()));
     }
 

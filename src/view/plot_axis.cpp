@@ -148,8 +148,7 @@ bool can_be_divided(double extent) {
 }
 
 std::vector<std::size_t> visible_points(const std::vector<PixelPoint>& points) {
-    const auto is_left = [](const PixelPoint& a, const PixelPoint& b) { return a.x < b.x; };
-    if (std::is_sorted(points.begin(), points.end(), is_left)) return outline(points);
+    if (std::ranges::is_sorted(points, {}, &PixelPoint::x)) return outline(points);
     std::vector<std::size_t> kept{0};
     for (std::size_t i = 1; i < points.size(); ++i) {
         const PixelPoint& last = points[kept.back()];

@@ -44,10 +44,9 @@ Supports::Supports(const System& system, Vec2 gravity_m_s2, std::span<const Moti
     : side_px_(side_px), up_(axis_against(gravity_m_s2)) {
     for (std::size_t i = 0; i < system.bodies.size(); ++i)
         add_pins(system, system.bodies[i], motion, line_px[i]);
-    std::ranges::sort(plates_, [this](const Plate& a, const Plate& b) {
-        const Local first = local(a.pin_m);
-        const Local second = local(b.pin_m);
-        return first.up != second.up ? first.up < second.up : first.along < second.along;
+    std::ranges::sort(plates_, {}, [this](const Plate& plate) {
+        const Local place = local(plate.pin_m);
+        return std::pair(place.up, place.along);
     });
 }
 

@@ -59,9 +59,7 @@ std::size_t sort_and_cut(std::vector<PaletteBin>& bins, const Box& box) {
     const auto begin = bins.begin() + static_cast<std::ptrdiff_t>(box.first);
     const auto end = bins.begin() + static_cast<std::ptrdiff_t>(box.last);
     // Stable: bins begin in the order of their colours, so the result depends on nothing else.
-    std::stable_sort(begin, end, [c = box.channel](const PaletteBin& a, const PaletteBin& b) {
-        return level(a, c) < level(b, c);
-    });
+    std::ranges::stable_sort(begin, end, {}, [&](const PaletteBin& bin) { return level(bin, box.channel); });
     std::uint64_t all = 0;
     for (auto bin = begin; bin != end; ++bin) all += weight(*bin);
     std::uint64_t half = 0;

@@ -112,9 +112,8 @@ Contents contents_of(const std::string& folder) {
             contents.has_others = true;
     }
     if (failure) fail_file("read", folder, failure.value());
-    const auto key = [](const ChunkFile& chunk) { return std::pair(chunk.number, -chunk.frames); };
-    std::ranges::sort(contents.chunks,
-                      [&](const ChunkFile& a, const ChunkFile& b) { return key(a) < key(b); });
+    std::ranges::sort(contents.chunks, {},
+                      [](const ChunkFile& chunk) { return std::pair(chunk.number, -chunk.frames); });
     return contents;
 }
 
