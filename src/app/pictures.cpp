@@ -74,8 +74,7 @@ void FigureOptions::add_to(CLI::App& command, const std::string& output_help) {
     times.add_to(command);
     command.add_option("-o,--output", output, output_help)->required();
     scene.add_size(command);
-    scene.add_shortcut(command, "--fps", "video.fps", "frames per second");
-    scene.add_shortcut(command, "--duration", "world.duration", "seconds");
+    scene.add_timing(command);
     command.add_option("--width-mm", width_mm, "width in print; the height follows from video.size")
         ->check(within(1.0, 10000.0))
         ->excludes("--size");

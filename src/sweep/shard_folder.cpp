@@ -29,13 +29,12 @@ std::string shard_name(std::int64_t shard) {
 /// The number of a shard file or an index; std::nullopt for another name.
 std::optional<std::int64_t> shard_of(const std::string& name) {
     constexpr std::size_t kPrefix = std::string_view("shard-").size();
-    const std::size_t dot = name.rfind('.');
-    if (dot == std::string::npos || dot <= kPrefix || dot > kPrefix + 18) return std::nullopt;
-    const std::string digits = name.substr(kPrefix, dot - kPrefix);
-    if (!std::ranges::all_of(digits, [](char c) { return c >= '0' && c <= '9'; })) return std::nullopt;
-    const std::int64_t shard = std::stoll(digits);
-    const bool is_one = name == shard_name(shard) + ".tar" || name == shard_name(shard) + ".json";
-    return is_one ? std::optional(shard) : std::nullopt;
+    if (name.size() < kPrefix) return std::nullopt;
+    const auto shard =
+        whole_number<std::int64_t>(std::string_view(name).substr(kPrefix, name.rfind('.') - kPrefix));
+    const bool is_one =
+        shard && *shard >= 0 && (name == shard_name(*shard) + ".tar" || name == shard_name(*shard) + ".json");
+    return is_one ? shard : std::nullopt;
 }
 
 bool is_sweep_file(const std::string& name) {
