@@ -197,8 +197,7 @@ void keep_standard_streams() {
 }
 
 ExitCode interruption() {
-    // The codes are those of shells: 128 and the number of the signal.
-    return asked_to_stop_by == 0 ? ExitCode::kOk : static_cast<ExitCode>(128 + asked_to_stop_by);
+    return asked_to_stop_by == 0 ? ExitCode::kOk : static_cast<ExitCode>(kSignalBase + asked_to_stop_by);
 }
 
 void set_interruption_message(const char* message) {
