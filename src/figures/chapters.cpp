@@ -202,8 +202,7 @@ void add_tensions_along(const Film& film, const MotionSummary& motion, report::C
 
 report::Chapter motion_chapter(Film& film, const MotionSummary& motion, const FigureTimes& times,
                                const WritePoses& write) {
-    report::Chapter chapter;
-    chapter.title = "Motion";
+    report::Chapter chapter{.title = "Motion"};
     chapter.summary = model_text(film) + " " + method_text(film);
     const Rational fps = film.scene().video.scene_rate().rational();
     chapter.paragraphs.push_back(
@@ -229,8 +228,7 @@ report::Chapter motion_chapter(Film& film, const MotionSummary& motion, const Fi
 }
 
 report::Chapter path_chapter(const Film& film, const MotionSummary& motion) {
-    report::Chapter chapter;
-    chapter.title = "Path";
+    report::Chapter chapter{.title = "Path"};
     if (motion.bodies.empty()) {
         chapter.paragraphs.emplace_back("All particles are pinned: nothing moves.");
         return chapter;
@@ -266,8 +264,7 @@ report::Chapter path_chapter(const Film& film, const MotionSummary& motion) {
 }
 
 report::Chapter angle_chapter(const Film& film, const MotionSummary& motion) {
-    report::Chapter chapter;
-    chapter.title = "Angle";
+    report::Chapter chapter{.title = "Angle"};
     const System& system = film.system();
     const std::ptrdiff_t turning = turning_count(system, motion);
     if (turning == 0) return chapter;
@@ -292,8 +289,7 @@ report::Chapter angle_chapter(const Film& film, const MotionSummary& motion) {
 }
 
 report::Chapter phase_chapter(const Film& film, const MotionSummary& motion) {
-    report::Chapter chapter;
-    chapter.title = "Phase portrait";
+    report::Chapter chapter{.title = "Phase portrait"};
     if (motion.bodies.empty()) return chapter;
     const System& system = film.system();
     const bool turns = turning_count(system, motion) == std::ssize(motion.bodies);
@@ -317,8 +313,7 @@ report::Chapter phase_chapter(const Film& film, const MotionSummary& motion) {
 }
 
 report::Chapter energy_chapter(const Film& film, const MotionSummary& motion) {
-    report::Chapter chapter;
-    chapter.title = "Energy";
+    report::Chapter chapter{.title = "Energy"};
     const auto error = film.diagnostics().largest.energy_error;
     chapter.summary = error ? fmt::format(
                                   "The energy error, | E - E(0) | over the sum of weight times length of all "
@@ -338,8 +333,7 @@ report::Chapter energy_chapter(const Film& film, const MotionSummary& motion) {
 }
 
 report::Chapter tension_chapter(const Film& film, const MotionSummary& motion) {
-    report::Chapter chapter;
-    chapter.title = "Tension";
+    report::Chapter chapter{.title = "Tension"};
     if (!motion.unknown_tensions.empty()) chapter.paragraphs.push_back(unknown_text(film, motion));
     const Extreme& largest = motion.tension;
     if (!largest.is_known) {
@@ -368,8 +362,7 @@ report::Chapter tension_chapter(const Film& film, const MotionSummary& motion) {
 }
 
 report::Chapter strain_chapter(const Film& film, const MotionSummary& motion) {
-    report::Chapter chapter;
-    chapter.title = "Strain";
+    report::Chapter chapter{.title = "Strain"};
     const System& system = film.system();
     const Extreme& largest = motion.strain;
     const bool stretches = std::ranges::any_of(

@@ -118,9 +118,9 @@ struct Picture {
 /// One subject: what the figures show, and the figures.
 struct Chapter {
     std::string title;
-    std::vector<std::string> paragraphs;  ///< plain text
-    std::vector<Table> tables;
-    std::vector<Plot> plots;
+    std::vector<std::string> paragraphs = {};  ///< plain text
+    std::vector<Table> tables = {};
+    std::vector<Plot> plots = {};
     std::string summary = {};  ///< what it found, in a sentence: the report opens with those; may be empty
     std::vector<Picture> pictures = {};  ///< before the plots
 };

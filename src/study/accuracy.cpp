@@ -149,8 +149,7 @@ ChapterWork accuracy_work(const StudyDef& def) {
              }});
     }
     work.finish = [measured] {
-        report::Chapter chapter;
-        chapter.title = "Reference numbers";
+        report::Chapter chapter{.title = "Reference numbers"};
         chapter.paragraphs = {
             "The methods against closed forms and against numbers that were computed by others to more "
             "digits than a double holds."};

@@ -135,8 +135,7 @@ void run_settling(double delta, double step_s, Findings& findings) {
 }
 
 report::Chapter chapter_of(const Findings& findings) {
-    report::Chapter chapter;
-    chapter.title = "The source report's findings";
+    report::Chapter chapter{.title = "The source report's findings"};
     chapter.paragraphs = {
         "The report's start and method: bars of reach 7, one sweep per step, a force of 9.8 N per particle. "
         "They are compared with the motion of a true rope, by method exact, and with that of a rigid rod, in "

@@ -35,8 +35,7 @@ report::Chapter chapter_of(const report::Table& table) {
         return std::ranges::count_if(table.rows,
                                      [&](const auto& row) { return row[4] == report::Cell(result); });
     };
-    report::Chapter chapter;
-    chapter.title = "Hard cases";
+    report::Chapter chapter{.title = "Hard cases"};
     chapter.summary = fmt::format("Of {} hard cases, {} passed, {} failed and {} were not run.",
                                   table.rows.size(), count(kPassed), count(kFailed), count(kNotRun));
     chapter.paragraphs = {chapter.summary};

@@ -209,8 +209,7 @@ void add_bits(std::vector<HardCase>& cases) {
 /// minimum of several runs.
 Outcome damped(const MethodDef& method, double duration_s, double drag_1_s, int reach) {
     constexpr int kRuns = 4;
-    WorldDef world;
-    world.drag_1_s = drag_1_s;
+    const WorldDef world{.drag_1_s = drag_1_s};
     RopeDef rope = reference::straight_rope(20, 1.0, 45.0);
     rope.reach = reach;
     double first_s = std::numeric_limits<double>::infinity();

@@ -265,8 +265,7 @@ ChapterWork speed_work(const StudyDef& def) {
         sweeps.push_back(std::move(sweep));
     }
     work.finish = [sweeps] {
-        report::Chapter chapter;
-        chapter.title = "Speed against error";
+        report::Chapter chapter{.title = "Speed against error"};
         chapter.paragraphs = {
             "Every run computes the positions of all particles at every frame. Its time is that of the "
             "stepping alone, without set-up: the median of its repeats, with the least and the largest. A "

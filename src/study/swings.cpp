@@ -68,8 +68,7 @@ void watch(Probe& probe, const SwingDef& def, const std::vector<State>& truth, S
 std::vector<State> true_swing(int particles, double mass_kg) {
     constexpr double kPeriods = 2.0;
     constexpr double kTolerance = 1e-11;
-    WorldDef world;
-    world.gravity_m_s2 = {0.0, -kForceNewtons / mass_kg};
+    const WorldDef world{.gravity_m_s2 = {0.0, -kForceNewtons / mass_kg}};
     Probe probe(rope_of({particles, mass_kg, 1, 1}), world, ExactDef{kTolerance});
     std::vector<State> frames;
     const double duration_s = kPeriods * rod_of(particles, mass_kg).period_s();
@@ -102,8 +101,7 @@ double updates_per_second(const SwingDef& def, const Timing& timing) {
 double difference_under_gravity(double mass_kg, double other_mass_kg) {
     constexpr int kFrames = 600;
     SwingDef def;
-    WorldDef world;
-    world.gravity_m_s2 = {0.0, -kForceNewtons};
+    const WorldDef world{.gravity_m_s2 = {0.0, -kForceNewtons}};
     const RelaxationDef method{kStepSeconds, def.sweeps};
     def.mass_kg = mass_kg;
     Probe probe(rope_of(def), world, method);
@@ -122,9 +120,7 @@ std::optional<double> settling_time_s(const MethodDef& method, double drag_1_s, 
     constexpr double kSettledShare = 0.01;
     SwingDef def;
     if (!std::holds_alternative<RelaxationDef>(method)) def.reach = 1;
-    WorldDef world;
-    world.gravity_m_s2 = {0.0, -kForceNewtons};
-    world.drag_1_s = drag_1_s;
+    const WorldDef world{.gravity_m_s2 = {0.0, -kForceNewtons}, .drag_1_s = drag_1_s};
     Probe probe(rope_of(def), world, method);
     double settled_s = 0.0;
     for (int k = 1; k * kStepSeconds <= limit_s; ++k) {
