@@ -53,10 +53,7 @@ ExitCode sweep(const Console& console, const SweepOptions& options) {
     for (const std::string& columns : options.plots)
         static_cast<void>(figures::sweep_plot_titles(def, columns));
     if (options.checks) return check(console, def, options);
-    sweep::RunDef how;
-    how.folder = options.folder;
-    how.jobs = options.jobs;
-    how.force = options.force;
+    sweep::RunDef how{.folder = options.folder, .jobs = options.jobs, .force = options.force};
     if (!options.shard.empty()) how.shard = parse_shard(options.shard);
     options.gl.apply_to(how.film);
     how.on_progress = show_progress(console, "sweep");
