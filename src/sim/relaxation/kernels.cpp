@@ -43,40 +43,49 @@ void relax(double* a, double* b, double rest_m, double share_a, double share_b) 
 
 #if defined(__x86_64__)
 
-/// Maximum number of concurrent sweeps. Three hide a bar's latency if the rope is long enough; more share the
-/// memory reads of a rope too large for the caches.
+/// Maximum number of concurrent sweeps over the same packets. Three hide a bar's latency if the rope is long
+/// enough; more share the memory reads of a rope too large for the caches.
 constexpr std::size_t kSweepsAtOnce = 4;
-/// The same if two sweeps share an instruction.
-constexpr std::size_t kNarrowSweepsAtOnce = 6;
 
-/// A sweep in progress.
+/// A sweep in progress, or overlapping ones.
 struct Cursor {
-    std::size_t packet = 0;  ///< the next one
-    bool updates = false;    ///< this sweep is the first of a step
+    std::size_t packet = 0;      ///< the next one
+    std::uint64_t updating = 0;  ///< bit s: the sweep in stage s is the first of a step
 };
 
-/// Pointers into a schedule and a motion.
+/// Pointers into packed sweeps and a motion.
 struct Pointers {
     const RelaxationPacket* packets;
     const PacketShares* shares;
     const std::uint8_t* share_index;
-    const std::uint32_t* updates;
+    const std::array<std::uint8_t, RelaxationPacket::kLanes>* stage;
+    const PackedSweeps::Update* updates;
     const std::uint32_t* update_begin;
     double* position_m;
     RelaxationMove* moves;
     double keep;
+    std::uint64_t active = 1;  ///< bit s: stage s works
+    bool is_whole = true;      ///< all stages work
 
-    [[nodiscard]] const PacketShares& shares_of(std::size_t packet) const {
-        return shares[share_index[packet]];
-    }
+    Pointers(const PackedSweeps& sweeps, RelaxationMotion& motion)
+        : packets(sweeps.packets.data()),
+          shares(sweeps.shares.data()),
+          share_index(sweeps.share_index.data()),
+          stage(sweeps.stage.data()),
+          updates(sweeps.updates.data()),
+          update_begin(sweeps.update_begin.data()),
+          position_m(motion.position_m.data()),
+          moves(motion.moves.data()),
+          keep(motion.keep) {}
 };
 
-/// Relaxes the bars in lanes `lane` and `lane` + 1 of packet k, one of which has no length.
-[[gnu::noinline, gnu::cold]] void relax_one_by_one(Pointers p, std::size_t k, std::size_t lane) {
+/// Relaxes the bars of active stages in lanes `lane` to `end` - 1 of packet k, one of which has no length.
+[[gnu::noinline, gnu::cold]] void relax_one_by_one(Pointers p, std::size_t k, std::size_t lane,
+                                                   std::size_t end) {
     const RelaxationPacket& packet = p.packets[k];
-    const PacketShares& shares = p.shares_of(k);
-    for (std::size_t i = lane; i < lane + 2; ++i) {
-        if (i > lane && packet.a[i] == packet.a[lane]) continue;
+    const PacketShares& shares = p.shares[p.share_index[k]];
+    for (std::size_t i = lane; i < end; ++i) {
+        if ((p.active >> p.stage[k][i] & 1U) == 0) continue;
         relax(p.position_m + packet.a[i], p.position_m + packet.b[i], packet.rest_m[i], shares.a[i],
               shares.b[i]);
     }
@@ -98,18 +107,19 @@ CORDA_INLINE void update_particle(const Pointers& p, std::uint32_t particle) {
 }
 
 /// Makes the updates before the next `packets` packets of a sweep.
-void update_ahead(Pointers p, const Cursor& sweep, std::size_t packets) {
-    if (!sweep.updates) return;
-    const std::uint32_t* const begin = p.update_begin + sweep.packet;
-    const std::uint32_t* const updates = p.updates;
-    const std::uint32_t end = begin[packets];
-    for (std::uint32_t j = *begin; j < end; ++j) update_particle(p, updates[j]);
+CORDA_INLINE void update_ahead(const Pointers& p, const Cursor& sweep, std::size_t packets) {
+    if (sweep.updating == 0) return;
+    const std::uint32_t end = p.update_begin[sweep.packet + packets];
+    for (std::uint32_t j = p.update_begin[sweep.packet]; j < end; ++j) {
+        const auto [particle, stage] = p.updates[j];
+        if ((sweep.updating >> stage & 1U) != 0) update_particle(p, particle);
+    }
 }
 
 /// Relaxes the bars in lanes `lane` and `lane` + 1 of packet k.
 CORDA_INLINE void relax_two(const Pointers& p, std::size_t k, std::size_t lane) {
     const RelaxationPacket& packet = p.packets[k];
-    const PacketShares& shares = p.shares_of(k);
+    const PacketShares& shares = p.shares[p.share_index[k]];
     double* const a0 = p.position_m + packet.a[lane];
     double* const a1 = p.position_m + packet.a[lane + 1];
     double* const b0 = p.position_m + packet.b[lane];
@@ -125,7 +135,7 @@ CORDA_INLINE void relax_two(const Pointers& p, std::size_t k, std::size_t lane) 
     const __m128d distance =
         _mm_sqrt_pd(_mm_add_pd(_mm_unpacklo_pd(square0, square1), _mm_unpackhi_pd(square0, square1)));
     if (_mm_movemask_pd(_mm_cmpeq_pd(distance, _mm_setzero_pd())) != 0) [[unlikely]]
-        return relax_one_by_one(p, k, lane);
+        return relax_one_by_one(p, k, lane, lane + 2);
     const __m128d adjust = _mm_sub_pd(distance, _mm_load_pd(packet.rest_m.data() + lane));
     const __m128d move0 =
         _mm_mul_pd(_mm_div_pd(along0, _mm_unpacklo_pd(distance, distance)), _mm_unpacklo_pd(adjust, adjust));
@@ -137,34 +147,38 @@ CORDA_INLINE void relax_two(const Pointers& p, std::size_t k, std::size_t lane) 
     _mm_storeu_pd(b1, _mm_sub_pd(at_b1, _mm_mul_pd(_mm_set1_pd(shares.b[lane + 1]), move1)));
 }
 
-CORDA_INLINE void relax_packet(const Pointers& p, std::size_t k) {
-    relax_two(p, k, 0);
-    if (!p.shares_of(k).is_half) relax_two(p, k, 2);
-}
-
-/// For packets of particles that are pinned and of bars that have no length.
-[[gnu::noinline]] void relax_other_packet(const Pointers& p, std::size_t k) {
-    relax_packet(p, k);
-}
-
 /// Runs `packets` packets of each sweep under way, one of each in turn.
 void run_by_sse2(Pointers p, std::span<Cursor> sweeps, std::size_t packets) {
     for (; packets > 0; --packets) {
         for (Cursor& sweep : sweeps) {
             update_ahead(p, sweep, 1);
-            relax_packet(p, sweep.packet++);
+            const std::size_t k = sweep.packet++;
+            relax_two(p, k, 0);
+            if (p.packets[k].a[0] != p.packets[k].a[2]) relax_two(p, k, 2);
         }
     }
 }
 
-/// Two pairs of numbers.
-CORDA_AVX2 CORDA_INLINE __m256d load_pairs(const double* first, const double* second) {
-    return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(first)), _mm_loadu_pd(second), 1);
+using Indices = std::array<std::uint32_t, RelaxationPacket::kLanes>;
+
+/// The positions of the particles of lanes `lane` and `lane` + 2.
+CORDA_AVX2 CORDA_INLINE __m256d load_pairs(const double* position_m, const Indices& at, std::size_t lane) {
+    return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(position_m + at[lane])),
+                                _mm_loadu_pd(position_m + at[lane + 2]), 1);
 }
 
-CORDA_AVX2 CORDA_INLINE void store_pairs(double* first, double* second, __m256d pairs) {
-    _mm_storeu_pd(first, _mm256_castpd256_pd128(pairs));
-    _mm_storeu_pd(second, _mm256_extractf128_pd(pairs, 1));
+/// Adds to the positions of the particles of lanes `lane` and `lane` + 2, or subtracts from them: one after
+/// the other, because an unused lane has particles of another one.
+template <bool kAdds>
+CORDA_AVX2 CORDA_INLINE void move_pairs(double* position_m, const Indices& at, std::size_t lane, __m256d by) {
+    double* const first = position_m + at[lane];
+    const __m128d by_first = _mm256_castpd256_pd128(by);
+    const __m128d at_first = _mm_loadu_pd(first);
+    _mm_storeu_pd(first, kAdds ? _mm_add_pd(at_first, by_first) : _mm_sub_pd(at_first, by_first));
+    double* const second = position_m + at[lane + 2];
+    const __m128d by_second = _mm256_extractf128_pd(by, 1);
+    const __m128d at_second = _mm_loadu_pd(second);
+    _mm_storeu_pd(second, kAdds ? _mm_add_pd(at_second, by_second) : _mm_sub_pd(at_second, by_second));
 }
 
 /// The first number of each pair, twice, and the second.
@@ -175,155 +189,142 @@ CORDA_AVX2 CORDA_INLINE __m256d second_of(__m256d pairs) {
     return _mm256_permute_pd(pairs, 0xf);
 }
 
-/// The particles of four bars: a0 and b0 of lanes 0 and 2, a1 and b1 of lanes 1 and 3.
-struct Ends {
-    __m256d a0, a1, b0, b1;
-};
-
-/// Four bars between the square root and the division.
+/// Four bars between the square root and the division: lanes 0 and 2, and lanes 1 and 3.
 struct Begun {
     __m256d along0, along1, distance;
 };
 
-/// Four bars without a common particle at a time, all particles of which are free: packets of one sweep, or
-/// the lanes 0 and 1 of packets of two sweeps, which are at least `lag` packets apart.
-template <bool kIsNarrow>
-struct Fours {
-    const RelaxationPacket* first = nullptr;
-    const RelaxationPacket* second = nullptr;
-    const std::uint8_t* first_kind = nullptr;
-    const std::uint8_t* second_kind = nullptr;
+CORDA_AVX2 CORDA_INLINE Begun begin_bars(const RelaxationPacket& packet, const double* position_m) {
+    const __m256d along0 =
+        _mm256_sub_pd(load_pairs(position_m, packet.b, 0), load_pairs(position_m, packet.a, 0));
+    const __m256d along1 =
+        _mm256_sub_pd(load_pairs(position_m, packet.b, 1), load_pairs(position_m, packet.a, 1));
+    const __m256d square0 = _mm256_mul_pd(along0, along0);
+    const __m256d square1 = _mm256_mul_pd(along1, along1);
+    return {along0, along1,
+            _mm256_sqrt_pd(
+                _mm256_add_pd(_mm256_unpacklo_pd(square0, square1), _mm256_unpackhi_pd(square0, square1)))};
+}
 
-    Fours() = default;
-    Fours(const Pointers& p, std::size_t k, std::size_t l)
-        : first(p.packets + k),
-          second(p.packets + l),
-          first_kind(p.share_index + k),
-          second_kind(p.share_index + l) {}
-
-    [[nodiscard]] bool are_free(std::size_t k) const {
-        // Unused lanes repeat bars, which does not change them.
-        if (!kIsNarrow) return first_kind[k] <= RelaxationSchedule::kFreeHalf;
-        return first_kind[k] == RelaxationSchedule::kFreeHalf &&
-               second_kind[k] == RelaxationSchedule::kFreeHalf;
+CORDA_AVX2 CORDA_INLINE void finish_bars(const Pointers& p, std::size_t k, const Begun& begun) {
+    const RelaxationPacket& packet = p.packets[k];
+    const __m256d distance = begun.distance;
+    if (_mm256_movemask_pd(_mm256_cmp_pd(distance, _mm256_setzero_pd(), _CMP_EQ_OQ)) != 0) [[unlikely]]
+        return relax_one_by_one(p, k, 0, RelaxationPacket::kLanes);
+    const __m256d toward0 = _mm256_div_pd(begun.along0, first_of(distance));
+    const __m256d toward1 = _mm256_div_pd(begun.along1, second_of(distance));
+    const __m256d adjust = _mm256_sub_pd(distance, _mm256_load_pd(packet.rest_m.data()));
+    // Shares are 0, 1/2 or 1: their products are exact, so they may come before the other factors.
+    if (p.is_whole && p.share_index[k] == PackedSweeps::kFree) [[likely]] {
+        const __m256d half = _mm256_mul_pd(_mm256_set1_pd(0.5), adjust);
+        const __m256d move0 = _mm256_mul_pd(toward0, first_of(half));
+        const __m256d move1 = _mm256_mul_pd(toward1, second_of(half));
+        move_pairs<true>(p.position_m, packet.a, 0, move0);
+        move_pairs<true>(p.position_m, packet.a, 1, move1);
+        move_pairs<false>(p.position_m, packet.b, 0, move0);
+        move_pairs<false>(p.position_m, packet.b, 1, move1);
+        return;
     }
+    // Inactive lanes subtract 0, which changes no number; a sum with 0 would change -0.
+    const PacketShares& shares = p.shares[p.share_index[k]];
+    const __m256d adjust_a =
+        _mm256_xor_pd(_mm256_set1_pd(-0.0), _mm256_mul_pd(_mm256_load_pd(shares.a.data()), adjust));
+    const __m256d adjust_b = _mm256_mul_pd(_mm256_load_pd(shares.b.data()), adjust);
+    const __m256i stage = _mm256_cvtepu8_epi64(_mm_loadu_si32(p.stage[k].data()));
+    const __m256i active = _mm256_srlv_epi64(_mm256_set1_epi64x(static_cast<long long>(p.active)), stage);
+    // All bits of the lanes of active stages.
+    const __m256d mask = _mm256_castsi256_pd(
+        _mm256_sub_epi64(_mm256_setzero_si256(), _mm256_and_si256(active, _mm256_set1_epi64x(1))));
+    const __m256d mask0 = first_of(mask);
+    const __m256d mask1 = second_of(mask);
+    move_pairs<false>(p.position_m, packet.a, 0,
+                      _mm256_and_pd(mask0, _mm256_mul_pd(toward0, first_of(adjust_a))));
+    move_pairs<false>(p.position_m, packet.a, 1,
+                      _mm256_and_pd(mask1, _mm256_mul_pd(toward1, second_of(adjust_a))));
+    move_pairs<false>(p.position_m, packet.b, 0,
+                      _mm256_and_pd(mask0, _mm256_mul_pd(toward0, first_of(adjust_b))));
+    move_pairs<false>(p.position_m, packet.b, 1,
+                      _mm256_and_pd(mask1, _mm256_mul_pd(toward1, second_of(adjust_b))));
+}
 
-    CORDA_AVX2 CORDA_INLINE Ends ends(std::size_t k, const double* position_m) const {
-        return {load(position_m, first[k].a, second[k].a, 0), load(position_m, first[k].a, second[k].a, 1),
-                load(position_m, first[k].b, second[k].b, 0), load(position_m, first[k].b, second[k].b, 1)};
-    }
-
-    CORDA_AVX2 CORDA_INLINE static Begun begin(const Ends& at) {
-        const __m256d along0 = _mm256_sub_pd(at.b0, at.a0);
-        const __m256d along1 = _mm256_sub_pd(at.b1, at.a1);
-        const __m256d square0 = _mm256_mul_pd(along0, along0);
-        const __m256d square1 = _mm256_mul_pd(along1, along1);
-        return {along0, along1,
-                _mm256_sqrt_pd(_mm256_add_pd(_mm256_unpacklo_pd(square0, square1),
-                                             _mm256_unpackhi_pd(square0, square1)))};
-    }
-
-    /// Returns false, with nothing moved, if a bar has no length.
-    CORDA_AVX2 CORDA_INLINE bool finish(std::size_t k, const Ends& at, const Begun& begun,
-                                        double* position_m) const {
-        if (_mm256_movemask_pd(_mm256_cmp_pd(begun.distance, _mm256_setzero_pd(), _CMP_EQ_OQ)) != 0)
-            [[unlikely]]
-            return false;
-        const __m256d rest_m = kIsNarrow ? load_pairs(first[k].rest_m.data(), second[k].rest_m.data())
-                                         : _mm256_load_pd(first[k].rest_m.data());
-        // Halving is exact, so it may come before the other factors.
-        const __m256d adjust = _mm256_mul_pd(_mm256_set1_pd(0.5), _mm256_sub_pd(begun.distance, rest_m));
-        const __m256d move0 =
-            _mm256_mul_pd(_mm256_div_pd(begun.along0, first_of(begun.distance)), first_of(adjust));
-        const __m256d move1 =
-            _mm256_mul_pd(_mm256_div_pd(begun.along1, second_of(begun.distance)), second_of(adjust));
-        store(position_m, first[k].a, second[k].a, 0, _mm256_add_pd(at.a0, move0));
-        store(position_m, first[k].b, second[k].b, 0, _mm256_sub_pd(at.b0, move0));
-        store(position_m, first[k].a, second[k].a, 1, _mm256_add_pd(at.a1, move1));
-        store(position_m, first[k].b, second[k].b, 1, _mm256_sub_pd(at.b1, move1));
-        return true;
-    }
-
-  private:
-    static constexpr std::size_t kSecondLane = kIsNarrow ? 0 : 2;
-    using Index = std::array<std::uint32_t, RelaxationPacket::kLanes>;
-
-    CORDA_AVX2 CORDA_INLINE static __m256d load(const double* position_m, const Index& first,
-                                                const Index& second, std::size_t lane) {
-        return load_pairs(position_m + first[lane], position_m + second[kSecondLane + lane]);
-    }
-    CORDA_AVX2 CORDA_INLINE static void store(double* position_m, const Index& first, const Index& second,
-                                              std::size_t lane, __m256d pairs) {
-        store_pairs(position_m + first[lane], position_m + second[kSecondLane + lane], pairs);
-    }
-};
-
-/// Relaxes `packets` packets of kCount sweeps, or of pairs of them, in turn.
-template <bool kIsNarrow, std::size_t kCount>
-CORDA_AVX2 void run_fours(const Pointers& p, const Cursor* sweeps, std::size_t packets) {
-    constexpr std::size_t kSweepsEach = kIsNarrow ? 2 : 1;
-    // While bars wait for their square roots, those of another sweep begin. With fewer sweeps, the CPU's own
-    // order is as good.
-    constexpr bool kIsPipelined = kCount > 3;
-    double* const position_m = p.position_m;
-    Fours<kIsNarrow> fours[kCount];
-    for (std::size_t i = 0; i < kCount; ++i)
-        fours[i] = {p, sweeps[kSweepsEach * i].packet, sweeps[kSweepsEach * (i + 1) - 1].packet};
+/// Relaxes `packets` packets of kCount sweeps in turn. While bars wait for their square roots, those of
+/// another sweep begin.
+template <std::size_t kCount>
+CORDA_AVX2 void run_fours(Pointers p, const Cursor* sweeps, std::size_t packets) {
+    constexpr bool kIsPipelined = kCount > 1;
+    std::size_t first[kCount];
+    for (std::size_t i = 0; i < kCount; ++i) first[i] = sweeps[i].packet;
     Begun next{};
-    if constexpr (kIsPipelined) next = fours[0].begin(fours[0].ends(0, position_m));
+    if (kIsPipelined) next = begin_bars(p.packets[first[0]], p.position_m);
     for (std::size_t k = 0; k < packets; ++k) {
 #pragma GCC unroll 4
         for (std::size_t i = 0; i < kCount; ++i) {
-            Begun begun = next;
-            if (kIsPipelined && i + 1 < kCount) next = fours[i + 1].begin(fours[i + 1].ends(k, position_m));
+            if (!kIsPipelined) next = begin_bars(p.packets[first[i] + k], p.position_m);
+            const Begun begun = next;
+            if (kIsPipelined && i + 1 < kCount) next = begin_bars(p.packets[first[i + 1] + k], p.position_m);
             if (kIsPipelined && i + 1 == kCount && k + 1 < packets)
-                next = fours[0].begin(fours[0].ends(k + 1, position_m));
-            const Ends at = fours[i].ends(k, position_m);
-            if (!kIsPipelined) begun = fours[i].begin(at);
-            if (!fours[i].are_free(k) || !fours[i].finish(k, at, begun, position_m)) [[unlikely]] {
-                relax_other_packet(p, sweeps[kSweepsEach * i].packet + k);
-                if (kIsNarrow) relax_other_packet(p, sweeps[kSweepsEach * i + 1].packet + k);
-            }
+                next = begin_bars(p.packets[first[0] + k + 1], p.position_m);
+            finish_bars(p, first[i] + k, begun);
         }
     }
 }
 
-void run_none(const Pointers& /*p*/, const Cursor* /*sweeps*/, std::size_t /*packets*/) {}
-
-/// By the number of sweeps, or of pairs of them.
-template <bool kIsNarrow>
-constexpr std::array kRunFours{run_none, run_fours<kIsNarrow, 1>, run_fours<kIsNarrow, 2>,
-                               run_fours<kIsNarrow, 3>, run_fours<kIsNarrow, 4>};
+/// By the number of sweeps, less one.
+constexpr std::array kRunFours{run_fours<1>, run_fours<2>, run_fours<3>, run_fours<4>};
 
 /// As run_by_sse2().
-void run_by_avx2(const Pointers& p, const RelaxationSchedule& schedule, std::span<Cursor> sweeps,
-                 std::size_t packets) {
-    const std::size_t pairs = schedule.is_narrow ? sweeps.size() / 2 : 0;
-    const auto run = schedule.is_narrow ? kRunFours<true>[pairs] : kRunFours<false>[sweeps.size()];
-    const std::span<Cursor> alone = schedule.is_narrow ? sweeps.subspan(2 * pairs) : std::span<Cursor>{};
+void run_by_avx2(const Pointers& p, std::size_t at_once, std::span<Cursor> sweeps, std::size_t packets) {
     while (packets > 0) {
-        const std::size_t block = std::min(packets, schedule.block);
+        const std::size_t block = std::min(packets, at_once);
         for (const Cursor& sweep : sweeps) update_ahead(p, sweep, block);
-        run(p, sweeps.data(), block);
-        for (std::size_t k = 0; k < block && !alone.empty(); ++k) relax_other_packet(p, alone[0].packet + k);
+        kRunFours[sweeps.size() - 1](p, sweeps.data(), block);
         for (Cursor& sweep : sweeps) sweep.packet += block;
         packets -= block;
     }
 }
 
-/// Runs sweeps over a schedule, each at least `lag` packets behind its predecessor.
+/// Runs all packets of overlapping sweeps once. While bars wait for their square roots, the next packet
+/// begins.
+CORDA_AVX2 void run_period(Pointers p, const Cursor& sweeps, std::size_t at_once, std::size_t packets) {
+    Begun next{};
+    for (std::size_t k = 0; k < packets;) {
+        const std::size_t end = std::min(packets, k + at_once);
+        update_ahead(p, {k, sweeps.updating}, end - k);
+        for (; k < end; ++k) {
+            const Begun begun = next;
+            next = begin_bars(p.packets[k], p.position_m);
+            if (k > 0) finish_bars(p, k - 1, begun);
+        }
+    }
+    finish_bars(p, packets - 1, next);
+}
+
+void run_overlapping(Pointers p, const RelaxationSweeps& sweeps, const PackedSweeps& packed) {
+    const std::uint64_t all = ~std::uint64_t{0} >> (PackedSweeps::kMaxStages - packed.stages);
+    Cursor cursor;
+    p.active = 0;
+    for (std::uint64_t next = sweeps.begin;; ++next) {
+        const bool begins = next < sweeps.end;
+        p.active = (p.active << 1U | (begins ? 1U : 0U)) & all;
+        cursor.updating = (cursor.updating << 1U | (begins && sweeps.updates_before(next) ? 1U : 0U)) & all;
+        if (p.active == 0) return;
+        p.is_whole = p.active == all;
+        run_period(p, cursor, packed.block, packed.packets.size());
+    }
+}
+
+/// Runs sweeps over the same packets, each at least `lag` packets behind its predecessor.
 void run_staggered(const Pointers& p, const RelaxationSweeps& sweeps, const RelaxationSchedule& schedule,
                    bool has_avx2) {
-    const std::size_t length = schedule.packets.size();
+    const std::size_t length = schedule.alone.packets.size();
     const std::size_t lag = schedule.lag;
-    std::array<Cursor, std::max(kSweepsAtOnce, kNarrowSweepsAtOnce)> cursors;
-    const std::size_t at_once = schedule.is_narrow ? kNarrowSweepsAtOnce : kSweepsAtOnce;
+    std::array<Cursor, kSweepsAtOnce> cursors;
     std::size_t under_way = 0;
     std::uint64_t next = sweeps.begin;
-    const auto may_begin = [&] { return next < sweeps.end && under_way < at_once; };
+    const auto may_begin = [&] { return next < sweeps.end && under_way < kSweepsAtOnce; };
     while (next < sweeps.end || under_way > 0) {
         if (may_begin() && (under_way == 0 || cursors[under_way - 1].packet >= lag)) {
-            cursors[under_way++] = {0, sweeps.updates_before(next)};
+            cursors[under_way++] = {0, sweeps.updates_before(next) ? 1U : 0U};
             ++next;
         }
         // Up to where the next sweep begins or the first one ends.
@@ -331,9 +332,10 @@ void run_staggered(const Pointers& p, const RelaxationSweeps& sweeps, const Rela
         if (may_begin()) packets = std::min(packets, lag - cursors[under_way - 1].packet);
         const std::span<Cursor> current(cursors.data(), under_way);
         // Where most packets depend on their predecessors, four bars at a time wait for the last of them.
-        const bool is_wide = under_way * length > 2 * schedule.levels || length > 2 * lag;
+        const bool is_wide = under_way * length > 3 * schedule.levels ||
+                             (length > 2 * lag && length > schedule.levels + schedule.levels / 4);
         if (has_avx2 && is_wide) {
-            run_by_avx2(p, schedule, current, packets);
+            run_by_avx2(p, schedule.alone.block, current, packets);
         } else {
             run_by_sse2(p, current, packets);
         }
@@ -376,15 +378,20 @@ void run_sweeps([[maybe_unused]] const RelaxationSchedule& schedule,
                 [[maybe_unused]] const RelaxationSweeps& sweeps, [[maybe_unused]] RelaxationKernel kernel,
                 [[maybe_unused]] RelaxationMotion& motion) {
 #if defined(__x86_64__)
-    const Pointers pointers{schedule.packets.data(),      schedule.shares.data(),
-                            schedule.share_index.data(),  schedule.updates.data(),
-                            schedule.update_begin.data(), motion.position_m.data(),
-                            motion.moves.data(),          motion.keep};
-    if (!schedule.packets.empty())
-        return run_staggered(pointers, sweeps, schedule, kernel == RelaxationKernel::kAvx2);
+    const bool has_avx2 = kernel == RelaxationKernel::kAvx2;
+    const Pointers alone(schedule.alone, motion);
+    const PackedSweeps& overlapping = schedule.overlapping;
+    // A packet of these takes three quarters of the time, but to begin and end takes more of them.
+    const std::uint64_t count = sweeps.end - sweeps.begin;
+    const bool overlaps =
+        !overlapping.packets.empty() && 3 * (count + overlapping.stages - 1) * overlapping.packets.size() <=
+                                            4 * count * schedule.alone.packets.size();
+    if (has_avx2 && overlaps) return run_overlapping({overlapping, motion}, sweeps, overlapping);
+    if (!schedule.alone.packets.empty()) return run_staggered(alone, sweeps, schedule, has_avx2);
     for (std::uint64_t sweep = sweeps.begin; sweep < sweeps.end; ++sweep) {
         if (!sweeps.updates_before(sweep)) continue;
-        for (const std::uint32_t particle : schedule.updates) update_particle(pointers, particle);
+        for (const PackedSweeps::Update& update : schedule.alone.updates)
+            update_particle(alone, update.particle);
     }
 #endif
 }

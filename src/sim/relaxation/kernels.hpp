@@ -29,8 +29,8 @@ struct RelaxationMotion {
 ///
 /// kScalar takes the bars one by one and waits for the square root and division of each. kSse2 takes two bars
 /// of a packet at once (RelaxationSchedule), and several sweeps, each `lag` packets behind its predecessor.
-/// kAvx2 takes four bars at once, of one packet or of two narrow ones of two sweeps, and begins the packet of
-/// one sweep before it finishes that of another.
+/// kAvx2 takes four bars at once, and begins the packet of one sweep before it finishes that of another;
+/// where these would leave it without work, it runs packets of bars of overlapping sweeps.
 enum class RelaxationKernel { kScalar, kSse2, kAvx2 };
 
 /// The kernels that this CPU can run, the fastest last.

@@ -170,8 +170,8 @@ void Relaxation::advance(std::uint64_t steps) {
                       [this](const RelaxationSweeps& piece) { run_sweeps(bars_, piece, motion_); });
     }
     for (const RelaxationSchedule& schedule : schedules_) {
-        const std::size_t bars = RelaxationPacket::kLanes * schedule.packets.size();
-        run_in_pieces(sweeps, bars + schedule.updates.size(),
+        const std::size_t bars = RelaxationPacket::kLanes * schedule.alone.packets.size();
+        run_in_pieces(sweeps, bars + schedule.alone.updates.size(),
                       [&](const RelaxationSweeps& piece) { run_sweeps(schedule, piece, kernel_, motion_); });
     }
     // Add what the bars moved to the move, as the next update would.

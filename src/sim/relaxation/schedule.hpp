@@ -17,9 +17,8 @@ struct RelaxationBar {
     double share_b = 0.5;
 };
 
-/// Up to four bars without a common particle. Bars repeat in lanes without one: computed from the same
-/// numbers and stored again, a bar is still relaxed once. Lanes 2 and 3 are unused if there are at most two
-/// bars.
+/// Up to four bars without a common particle. Unused lanes repeat bars: 0 1 0 1 if there are two, 0 1 2 2 if
+/// there are three.
 struct alignas(64) RelaxationPacket {
     static constexpr std::size_t kLanes = 4;
 
@@ -30,39 +29,54 @@ struct alignas(64) RelaxationPacket {
 
 /// Shares of the adjustments that the particles of a packet take. Few different ones occur: large ropes are
 /// bound by the memory that they read, so packets refer to them.
-struct PacketShares {
+struct alignas(64) PacketShares {
     std::array<double, RelaxationPacket::kLanes> a{0.5, 0.5, 0.5, 0.5};
     std::array<double, RelaxationPacket::kLanes> b{0.5, 0.5, 0.5, 0.5};
-    bool is_half = false;  ///< only lanes 0 and 1 are used
 
     auto operator<=>(const PacketShares&) const = default;
 };
 
-/// One sweep over the bars of some bodies, in packets for the SIMD kernel (kernels.hpp).
+/// Sweeps over the bars of some bodies, in packets for the SIMD kernels (kernels.hpp).
 ///
-/// Each bar goes into the first packet that has room after the packets of all earlier bars that share a
-/// particle with it. So every particle meets its bars in the given order, at most one per packet, and every
-/// number has the bits of that order. The same holds from sweep to sweep, and for Verlet's update of a
-/// particle at most `block` - 1 packets ahead of its first one: a sweep may begin while its predecessor is
-/// running, as long as it stays `lag` packets behind.
-struct RelaxationSchedule {
-    static constexpr std::uint8_t kFree = 0;  ///< index of the shares of a packet without pinned particles
-    static constexpr std::uint8_t kFreeHalf = 1;  ///< the same with lanes 0 and 1 alone
+/// Each bar goes into the first packet that has room, after those of all earlier bars that share a particle
+/// with it. So every particle meets its bars in the given order, at most one per packet, and every number has
+/// the bits of that order. The same holds from sweep to sweep, and for Verlet's update of a particle at most
+/// `block` - 1 packets ahead of its first one.
+struct PackedSweeps {
+    struct Update {
+        std::uint32_t particle = 0;
+        std::uint32_t stage = 0;
+    };
+    static constexpr std::size_t kMaxStages = 64;
+    static constexpr std::uint8_t kFree = 0;  ///< index of the shares of four bars without pinned particles
 
     std::vector<RelaxationPacket> packets;
-    std::vector<PacketShares> shares;       ///< all that occur, after those of kFree and kFreeHalf
+    std::vector<PacketShares> shares;       ///< all that occur
     std::vector<std::uint8_t> share_index;  ///< per packet: an index of `shares`
-    /// Particles in the order of their first packet; those without a bar come first.
-    std::vector<std::uint32_t> updates;
+    /// Per packet and lane: the stage (RelaxationSchedule::overlapping), kMaxStages - 1 for an unused lane.
+    std::vector<std::array<std::uint8_t, RelaxationPacket::kLanes>> stage;
+    /// In the order of the first packet of their particles; those without a bar come first.
+    std::vector<Update> updates;
     /// Packet k is preceded by the updates[j] with update_begin[k] <= j < update_begin[k + 1].
     std::vector<std::uint32_t> update_begin;
     /// Number of packets whose updates may be made together.
     std::size_t block = 1;
+    std::size_t stages = 1;
+};
+
+/// Packets for all numbers of sweeps.
+struct RelaxationSchedule {
+    /// One sweep. The next one may begin while it is running, as long as it stays `lag` packets behind.
+    PackedSweeps alone;
     /// Packet k of a sweep comes after packet k + lag - 1 of the sweep before; 1 .. number of packets.
     std::size_t lag = 1;
     /// Length of the longest row of bars each of which has to wait for its predecessor.
     std::size_t levels = 0;
-    bool is_narrow = false;  ///< most packets have at most two bars
+    /// Many sweeps, for bodies that would leave lanes or the CPU without work; no packets for others. A sweep
+    /// begins each time the packets run, and takes `stages` times (modulo scheduling: Rau and Glaeser 1981):
+    /// in run r, a lane or update of stage s works for sweep r - s. Bars come some packets after those that
+    /// they depend on.
+    PackedSweeps overlapping;
 };
 
 /// Schedules `bars`, to be relaxed in this order, of the `particle_count` particles from `first_particle` on;
