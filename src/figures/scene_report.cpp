@@ -79,7 +79,10 @@ void translate(Language language, report::Report& page) {
         into(chapter.title);
         localize(chapter.summary);
         for (std::string& paragraph : chapter.paragraphs) localize(paragraph);
-        for (report::Table& table : chapter.tables) into(table.title);
+        for (report::Table& table : chapter.tables) {
+            table.language = language;
+            into(table.title);
+        }
         for (report::Picture& picture : chapter.pictures) {
             localize(picture.title);
             localize(picture.caption);

@@ -48,7 +48,8 @@ struct Table {
     std::string title;
     std::vector<Column> columns;
     std::vector<std::vector<Cell>> rows;
-    std::string note;  ///< one or two sentences below it; may be empty
+    std::string note;                        ///< one or two sentences below it; may be empty
+    Language language = Language::kEnglish;  ///< of the decimal sign on the page
 
     /// Adds a row. Cells left out at its end are empty.
     void add(std::vector<Cell> cells) {

@@ -5,6 +5,7 @@
 #include "corda/core/markup.hpp"
 #include "corda/core/text.hpp"
 #include "corda/report/writers.hpp"
+#include "corda/view/words.hpp"
 
 namespace corda::report {
 namespace {
@@ -31,17 +32,19 @@ bool is_for_people(const Table& table, std::size_t column) {
 }
 
 /// "1.23e-5" as 1.23 · 10 to the -5.
-std::string number_html(double value) {
-    std::string text = short_number(value);
+std::string number_html(double value, Language language) {
+    std::string text = view::localized(short_number(value), language);
     const std::size_t e = text.find('e');
     if (e == std::string::npos) return text;
     const bool is_negative = text[e + 1] == '-';
     return fmt::format("{}·10<sup>{}{}</sup>", text.substr(0, e), is_negative ? "−" : "", text.substr(e + 2));
 }
 
-std::string cell_html(const Cell& cell) {
+std::string cell_html(const Cell& cell, Language language) {
     if (const auto* number = std::get_if<double>(&cell)) {
-        return fmt::format("<td class=\"number\" title=\"{:.17g}\">{}</td>", *number, number_html(*number));
+        return fmt::format("<td class=\"number\" title=\"{}\">{}</td>",
+                           view::localized(fmt::format("{:.17g}", *number), language),
+                           number_html(*number, language));
     }
     if (const auto* text = std::get_if<std::string>(&cell); text != nullptr && !text->empty()) {
         return fmt::format("<td class=\"{}\">{}</td>", text->size() > kLongText ? "long" : "text",
@@ -64,7 +67,7 @@ std::string table_html(const Table& table) {
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
         text += is_failed(table, r) ? "<tr class=\"failed\">" : "<tr>";
         for (std::size_t i = 0; i < table.columns.size(); ++i) {
-            if (is_for_people(table, i)) text += cell_html(table.rows[r][i]);
+            if (is_for_people(table, i)) text += cell_html(table.rows[r][i], table.language);
         }
         text += "</tr>\n";
     }

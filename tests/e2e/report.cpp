@@ -18,7 +18,9 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using test::run_corda;
 using test::run_shell;
+using testing::ContainsRegex;
 using testing::HasSubstr;
+using testing::Not;
 
 const char* const kPendulumOfReports = R"(schema = 1
 [world]
@@ -109,13 +111,18 @@ TEST_F(SceneReport, CanBePrintedAtItsWidth) {
     }
 }
 
-TEST_F(SceneReport, SaysThatTensionsAreUnknownForRelaxation) {
+TEST_F(SceneReport, SaysThatTensionsAreUnknownAndHasTheDecimalSignOfItsLanguage) {
     const std::string net =
         folder_.write("net.toml",
                       "schema = 1\n[world]\nduration = 0.2\n[[net]]\ngrid = { columns = 5, rows = 4, spacing "
                       "= 0.1 }\n[solver]\nmethod = \"relaxation\"\n[video]\nsize = [320, 180]\nfps = 20\n");
-    const auto result = run_corda({"report", net, "-o", out_, "--at", "0.1", "-q"});
+    const auto result =
+        run_corda({"report", net, "-o", out_, "--at", "0.1", "-q", "--set", "overlay.language=de"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
+    const std::string number = "<td class=\"number\" title=\"[0-9]+";
+    EXPECT_THAT(read("report.html"), ContainsRegex(number + ",[0-9]+\">[0-9]+,[0-9]+<"));
+    EXPECT_THAT(read("report.html"), Not(ContainsRegex(number + "\\.")));
+    EXPECT_THAT(read("largest.csv"), ContainsRegex("\nspeed,[0-9]+\\.[0-9]+,m/s,"));
     EXPECT_FALSE(fs::exists(out("tension_85mm.svg")));
     EXPECT_TRUE(fs::exists(out("strain_85mm.svg")));
     EXPECT_THAT(read("report.html"), HasSubstr("Tensions of net 0 are not known: method relaxation"));
