@@ -88,8 +88,10 @@ std::string text_about(const CLI::App& app, const std::string& topic) {
     if (topic.empty()) return help_of(app);
     if (topic == kSceneTopic) return scene::keys_text();
     if (topic == kManualTopic) return manual_page(app) + "\n";
-    if (const CLI::App* const command = find_command(app, topic)) return help_of(*command);
-    if (std::string text = scene::keys_text(topic); !text.empty()) return text;
+    const std::string keys = scene::keys_text(topic);
+    if (const CLI::App* const command = find_command(app, topic))
+        return help_of(*command) + (keys.empty() ? "" : "\n" + keys);
+    if (!keys.empty()) return keys;
     std::vector<std::string> topics = command_names(app);
     topics.emplace_back(kSceneTopic);
     topics.emplace_back(kManualTopic);

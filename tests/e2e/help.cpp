@@ -34,6 +34,8 @@ TEST(Help, ListsTheKeysOfAScene) {
     EXPECT_EQ(scene.out, scene::keys_text());
     for (const char* const table : {"style", "overlay.texts"})
         EXPECT_EQ(run_corda({"help", table}).out, scene::keys_text(table));
+    EXPECT_EQ(run_corda({"help", "golden"}).out,
+              run_corda({"golden", "--help"}).out + "\n" + scene::keys_text("golden"));
     EXPECT_THAT(scene::keys_text("overlay.texts"), AllOf(HasSubstr("from"), Not(HasSubstr("trail_s"))));
     const auto help = nlohmann::json::parse(run_corda({"help", "scene", "--json"}).out);
     EXPECT_EQ(help.at("help"), scene::keys_text());
