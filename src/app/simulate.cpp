@@ -41,12 +41,8 @@ struct SimulateOptions {
     bool dry_run = false;
 };
 
-/// How the columns of each body begin: with the label that it, or the body with which it is merged, has.
-std::vector<std::string> column_prefixes(const Film& film) {
-    System named = film.system();
-    const std::vector<BodyStyleDef>& styles = film.scene().body_styles;
-    for (std::size_t b = 1; b < std::min(styles.size(), named.bodies.size()); ++b)
-        if (styles[b].merged && styles[b].label.empty()) named.bodies[b].label = named.bodies[b - 1].label;
+/// How the columns of each body begin: with its label.
+std::vector<std::string> column_prefixes(const System& named) {
     std::vector<std::string> prefixes = body_keys(named);
     for (std::size_t b = 0; b < prefixes.size(); ++b)
         prefixes[b] = named.bodies[b].label.empty() ? "" : prefixes[b] + "_";
@@ -55,11 +51,10 @@ std::vector<std::string> column_prefixes(const Film& film) {
 
 /// The names of the columns, with units as the files of `report` have them. The time and the positions, in s
 /// and m, have the names that scripts know.
-std::string csv_header(const Film& film, const Columns& columns, CsvStyle style) {
+std::string csv_header(const System& system, const Columns& columns, CsvStyle style) {
     CsvLine line(style);
     line.add("t");
-    const System& system = film.system();
-    const std::vector<std::string> prefixes = column_prefixes(film);
+    const std::vector<std::string> prefixes = column_prefixes(system);
     std::vector<std::string> labels;  // of particles
     std::vector<std::string> of_links;
     for (std::size_t b = 0; b < system.bodies.size(); ++b) {
@@ -97,9 +92,8 @@ nlohmann::json bodies_json(const System& system) {
 }
 
 /// The columns of each body, for people.
-std::string columns_text(const Film& film) {
-    const System& system = film.system();
-    const std::vector<std::string> prefixes = column_prefixes(film);
+std::string columns_text(const System& system) {
+    const std::vector<std::string> prefixes = column_prefixes(system);
     std::string text;
     for (std::size_t b = 0; b < prefixes.size(); ++b) {
         const std::size_t first = system.bodies[b].first_particle;
@@ -147,7 +141,7 @@ nlohmann::json report(Film& film) {
     const Figures& largest = film.diagnostics().largest;
     nlohmann::json json = film_json(film);
     json["steps"] = film.diagnostics().steps;
-    json["bodies"] = bodies_json(film.system());
+    json["bodies"] = bodies_json(named_in_files(film.scene(), film.system()));
     json["wall_s"] = film.stepping_s();
     json["energy_error"] = or_null(largest.energy_error);
     json["max_strain"] = largest.strain;
@@ -169,7 +163,8 @@ std::string cost_text(const Film& film) {
 /// Writes the states of all frame times as CSV; without a file, only simulates.
 void write_states(const Console& console, Film& film, const SimulateOptions& options, OutputFile* csv) {
     Progress progress(console, "simulate", film.last_frame() + 1);
-    if (csv != nullptr) csv->write(csv_header(film, options.columns, options.style));
+    if (csv != nullptr)
+        csv->write(csv_header(named_in_files(film.scene(), film.system()), options.columns, options.style));
     CsvLine line(options.style);
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
         check_cancelled();
@@ -246,9 +241,10 @@ void write_output(const Console& console, Film& film, const SimulateOptions& opt
     std::unique_ptr<OutputFile> file;
     if (!options.output.empty()) {
         file = std::make_unique<OutputFile>(options.output, OutputOptions{.force = options.force});
-        constexpr std::size_t kMaxToldBodies = 20;
+        constexpr std::size_t kMaxNamedBodies = 20;
         const std::size_t bodies = film.system().bodies.size();
-        if (bodies > 1 && bodies <= kMaxToldBodies) console.info(columns_text(film));
+        if (bodies > 1 && bodies <= kMaxNamedBodies)
+            console.info(columns_text(named_in_files(film.scene(), film.system())));
     }
     try {
         if (options.columns.tensions) warn_of_tensions(console, film);

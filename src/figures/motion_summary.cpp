@@ -67,7 +67,7 @@ class Reader {
         std::vector<std::string> tip{"t_s"};
         std::vector<std::string> tension{"t_s"};
         std::vector<std::string> strain{"t_s", "largest"};
-        const std::vector<std::string> keys = body_keys(system_);
+        const std::vector<std::string> keys = body_keys(named_in_files(film_.scene(), system_));
         for (const BodyCurves& body : motion_.bodies) {
             const std::string& key = keys[body.followed.body];
             for (const char* what : {"x_m", "y_m", "vx_m_s", "vy_m_s"}) tip.push_back(key + "_" + what);

@@ -126,6 +126,21 @@ System system_of(const Scene& scene) {
     return system;
 }
 
+System named_in_files(const Scene& scene, System system) {
+    std::string label;
+    int count = 1;
+    for (std::size_t b = 0; b < std::min(scene.body_styles.size(), system.bodies.size()); ++b) {
+        const BodyStyleDef& style = scene.body_styles[b];
+        if (!style.merged || !style.label.empty()) {
+            label = style.label;
+            count = 1;
+        } else if (!label.empty()) {
+            system.bodies[b].label = fmt::format("{} {}", label, ++count);
+        }
+    }
+    return system;
+}
+
 std::vector<SolverDef> solvers_of(const Scene& scene) {
     std::vector<SolverDef> solvers(scene.ropes.size() + scene.nets.size(), scene.solver);
     std::vector<bool> is_named(solvers.size());

@@ -157,6 +157,10 @@ struct PlacedSettings {
 [[nodiscard]] System system_of(const Scene& scene);
 
 /// Checks definitions filled in by code against the types, ranges and words of the keys of a scene file.
+/// The system with the labels that files of numbers use: merged bodies without labels, such as copies, count
+/// on from the labelled one before them, as in "8 kg 2".
+[[nodiscard]] System named_in_files(const Scene& scene, System system);
+
 /// build_system() checks ropes and nets. Throws corda::Error (kInvalidScene), which names each bad key.
 void check_definitions(const Scene& scene);
 

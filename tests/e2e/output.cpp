@@ -133,7 +133,7 @@ TEST_F(Output, ColumnsHaveTheLabelsOfTheirBodies) {
                                          "label = \"P\"\ncopies = { count = 2, angle_deg = 1 }\n" + rope);
     const auto named = run_corda({"simulate", copies, "-o", "-"});
     EXPECT_THAT(named.out, testing::StartsWith("t,P_x0,P_y0,P_x1,P_y1,P_2_x2,P_2_y2,P_2_x3,P_2_y3,x4,"));
-    EXPECT_THAT(named.err, HasSubstr("P: P_x0 .. P_y1; rope 1: P_2_x2 .. P_2_y3; rope 2: x4 .. y5"));
+    EXPECT_THAT(named.err, HasSubstr("P: P_x0 .. P_y1; P 2: P_2_x2 .. P_2_y3; rope 2: x4 .. y5"));
 }
 
 TEST_F(Output, SimulateAddsVelocitiesTensionsAndEnergy) {

@@ -45,8 +45,10 @@ TEST(MotionSummary, HasTheEnergyAndTheTensionOfAPendulum) {
 
 TEST(MotionSummary, NamesColumnsByDistinctLabels) {
     const std::string rope = "[[rope]]\nhang = { links = 1, length = 2.0 }\n";
-    const std::string toml = "[world]\nduration = 0.1\n" + rope + "label = \"8 kg\"\n" + rope +
-                             "label = \"8 kg\"\n" + rope + "label = \"8 kg 2\"\n" + rope;
+    // Copies share the label of their rope.
+    const std::string toml = "[world]\nduration = 0.1\n" + rope +
+                             "label = \"8 kg\"\ncopies = { count = 2, angle_deg = 1 }\n" + rope +
+                             "label = \"8 kg 2\"\n" + rope;
     ReadScene scene(toml);
     for (const char* const key : {"8_kg", "8_kg_2", "8_kg_2_2", "rope_3"})
         EXPECT_EQ(scene.column("tip.csv", std::string(key) + "_x_m").size(), 7U) << key;
