@@ -335,8 +335,8 @@ ExitCode write_strobe(const Console& console, FigureOptions options) {
     options.take_origin(console, "strobe");
     const Scene scene = options.load(console);
     std::vector<RequestedTime> times = options.times.list(scene);
-    const auto again = std::ranges::unique(times, {}, &RequestedTime::time_s);
-    times.erase(again.begin(), again.end());  // one pose, one label
+    const auto is_same = [](const RequestedTime& a, const RequestedTime& b) { return a.time_s == b.time_s; };
+    times.erase(std::unique(times.begin(), times.end(), is_same), times.end());  // one pose, one label
     FigureDef def;
     for (const RequestedTime& time : times) def.times_s.push_back(time.time_s);
     return options.write_one(console, scene, times, def);
