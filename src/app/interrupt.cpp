@@ -100,7 +100,7 @@ Words words_for(int signal, const std::string& kept) {
 void make_last_words(const std::string& kept) {
     auto words = std::make_unique<LastWords>();
     for (std::size_t i = 0; i < kRequests.size(); ++i) (*words)[i] = words_for(kRequests[i], kept);
-    static std::vector<std::unique_ptr<const LastWords>> all;  // a handler may be reading the ones before
+    static std::vector<std::unique_ptr<const LastWords>> all;  // a handler may be reading earlier ones
     last_words = all.emplace_back(std::move(words)).get();
 }
 
@@ -169,7 +169,7 @@ void install_signal_handlers(bool json) {
         // nohup(1) has it ignored, so that the work survives its terminal.
         if (signal == SIGHUP && sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_IGN)
             continue;
-        struct sigaction action = {};  // without SA_RESTART: opening a pipe that nobody writes to must end
+        struct sigaction action = {};  // without SA_RESTART: opening a pipe without a writer must end
         action.sa_handler = on_signal;
         sigemptyset(&action.sa_mask);
         sigaction(signal, &action, nullptr);

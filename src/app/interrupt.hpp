@@ -18,12 +18,12 @@ void install_signal_handlers(bool json);
 /// Sets the folder of chunks that the message of a process that was ended by its handler names.
 void keep_words_of_parts(const std::string& parts);
 
-/// All is written and said: if what is left, destructors and exit handlers of libraries, does not return
-/// after a signal, the process ends with this code and without a message.
+/// To be called when all output and messages are written. If destructors or exit handlers of libraries do not
+/// return after a signal, the process then ends with this code and without a message.
 void note_end_of_work(int exit_code);
 
-/// Opens /dev/null for each closed standard stream: a file opened later would get its number, and with it
-/// what is meant for the stream.
+/// Opens /dev/null for each closed standard stream: a file opened later would get its number, and with it the
+/// text for the stream.
 void keep_standard_streams();
 
 /// The status to exit with once a signal has asked to stop; kOk before.

@@ -27,7 +27,7 @@ enum class ExitCode : int {
     kTerminated = 143,
 };
 
-/// Whether it is that of work which a signal ended and which keeps what was done.
+/// True if a signal ended the work. Finished parts are kept then.
 [[nodiscard]] constexpr bool is_interruption(ExitCode code) {
     return code == ExitCode::kHungUp || code == ExitCode::kInterrupted || code == ExitCode::kTerminated;
 }

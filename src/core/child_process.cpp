@@ -102,7 +102,7 @@ ChildEnd end_of(const std::string& answer) {
 /// Appends what the child writes until it closes its end; false if that takes longer than `wall_s`.
 bool receive(const Descriptor& in, double wall_s, std::string& text) {
     std::array<char, 4096> block{};
-    // Waits are counted rather than read off a clock, which goes on while a shell has stopped both processes.
+    // Waits are counted instead of read off a clock, which runs while a shell has stopped both processes.
     for (double waited_s = 0.0; waited_s < wall_s;) {
         check_cancelled();
         pollfd ready{in.get(), POLLIN, 0};

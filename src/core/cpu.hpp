@@ -1,7 +1,7 @@
 #pragma once
 
-// What differs between CPUs, apart from loops that are written in intrinsics: those stand beside the plain
-// loops that give the same bits.
+// Differences between CPUs, except loops that are written in intrinsics: each of those is in the file of the
+// plain loop that gives the same bits.
 
 #include <cstdint>
 

@@ -226,7 +226,7 @@ void OutputFile::open_temporary() {
         if (!descriptor_ && errno == EEXIST) continue;
         if (!descriptor_) break;
         // A process that locked the file first is about to remove it: wait, then create another. On a file
-        // system without locks nobody removes it.
+        // system without locks, no process removes it.
         while (::flock(descriptor_.get(), LOCK_EX) != 0 && errno == EINTR) {
         }
         if (leads_to(temporary_, descriptor_)) return;

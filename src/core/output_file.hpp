@@ -58,7 +58,7 @@ class OutputFile : NonCopyable {
     /// Removes the temporary file unless `commit` or `keep` was called.
     ~OutputFile();
 
-    /// Throws ReaderLeft, like all below, if whoever reads standard output closed it.
+    /// Throws ReaderLeft, like all below, if the reader of standard output has closed it.
     void write(std::string_view bytes);
 
     /// Contents of a file in memory, with those in the buffer of `write`.
@@ -106,7 +106,7 @@ class OutputFile : NonCopyable {
     [[nodiscard]] int rename_to(const std::string& name) const;
 
     std::string path_;    // as given
-    std::string target_;  // what is replaced: behind all symbolic links with `force`
+    std::string target_;  // the file to replace: behind all symbolic links with `force`
     std::string temporary_;
     std::string buffer_;
     OutputOptions options_;

@@ -25,8 +25,8 @@ struct Case {
     [[nodiscard]] bool is_whole() const;
 };
 
-/// The scenes of a suite; those that are invalid go to `invalid`, but for those of an update. TOML files of
-/// folders that are no scenes go to `passed_over`. Throws corda::Error as run().
+/// The scenes of a suite. Invalid ones go to `invalid`, except those of an update. TOML files of folders that
+/// are no scenes go to `passed_over`. Throws corda::Error as run().
 [[nodiscard]] std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid,
                                            std::vector<std::string>& passed_over);
 

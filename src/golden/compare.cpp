@@ -96,8 +96,8 @@ Difference compare_samples(const BasicImage<Sample>& a, const BasicImage<Sample>
     result.equal = differing == 0;
     if (pixels == 0 && mask != nullptr)
         throw Error(ExitCode::kUsage,
-                    "the mask is black everywhere, which leaves nothing to compare; what is to "
-                    "be compared must not be black in it");
+                    "the mask is black everywhere, which leaves nothing to compare; make it white where "
+                    "pictures must agree");
     if (pixels == 0) return result;
     constexpr int kUnit = kSamplesPerUnit<Sample>;
     result.max = static_cast<double>(max) / kUnit;

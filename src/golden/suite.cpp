@@ -69,7 +69,8 @@ bool passes(const Drawn& drawn, const DifferenceLimits& limits, const std::strin
     return false;
 }
 
-/// Compares a picture with its references until one passes; otherwise tells of the plain one, if there is.
+/// Compares a picture with its references until one passes. If none does, the result is that of the plain
+/// one.
 void judge(const Drawn& drawn, const std::vector<std::string>& variants, Checked& picture) {
     const GoldenDef& golden = *drawn.scene.golden;
     const DifferenceLimits limits{.max = golden.max,
@@ -177,8 +178,8 @@ class Runner {
         });
     }
 
-    /// Draws with what has been chosen as if it were frozen already, as checks will: a picture may say by
-    /// which method it is.
+    /// Draws with the chosen method and camera as if they were frozen already, as checks do: a picture may
+    /// name its method.
     void freeze(Job& job) {
         if (!job.frozen.empty()) return;
         job.frozen = freezing(job.scene->scene, job.made.front());
@@ -249,7 +250,7 @@ class Runner {
         }
     }
 
-    /// What the references of a scene freeze; from the first that says it.
+    /// Settings that the references of a scene freeze, from the first reference that records them.
     std::vector<Setting> frozen_settings(Case& one) const {
         for (const Checked& picture : one.pictures) {
             for (const std::string& path : variants_of(references_, picture.name)) {

@@ -104,8 +104,8 @@ struct SuiteResult {
 /// Failures as Markdown, for the summary or a comment of a pull request: a table per cause.
 [[nodiscard]] std::string markdown(const SuiteResult& result);
 
-/// One page of HTML that needs no other file: per failed picture the reference, what was drawn and sixteen
-/// times their difference, beside each other, blinking, or under a slider.
+/// One page of HTML that needs no other file. It shows, per failed picture, the reference, the new picture
+/// and sixteen times their difference, side by side, blinking, or under a slider.
 [[nodiscard]] std::string page_html(const SuiteResult& result);
 
 /// Sixteen times the difference of each channel on black, that of alpha in all three. Blue: only one of the

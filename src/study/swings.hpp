@@ -17,7 +17,7 @@ struct SwingDef {
     int sweeps = 1;
 };
 
-/// What a swing showed over two periods of the rigid rod that starts in the same way.
+/// Errors and strain of a swing over two periods of the rigid rod that starts in the same way.
 struct SwingFigures {
     double strain = 0.0;        ///< largest of a link
     double rope_error = 0.0;    ///< from the true rope (exact): largest, over the frames, of the RMS over L

@@ -64,10 +64,10 @@ void check_stamps(const DecodedVideo& video, VerifyReport& report) {
             video.first_pts);
     }
     if (video.uneven_at >= 0) {
-        problem(
-            report,
-            "the frame rate is not constant: frame {} is not {} ticks after the one before; render it again",
-            video.uneven_at, video.step);
+        problem(report,
+                "the frame rate is not constant: frame {} is not {} ticks after the previous frame; render "
+                "it again",
+                video.uneven_at, video.step);
     } else if (report.fps.num <= 0) {
         problem(report, "the frames have no duration, so there is no frame rate; render it again");
     }

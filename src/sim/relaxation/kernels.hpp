@@ -9,7 +9,7 @@
 
 namespace corda::sim {
 
-/// What Verlet's update knows of a particle: x and y of each. One cache line.
+/// A particle in Verlet's update: x and y of each quantity. One cache line.
 struct alignas(64) RelaxationMove {
     std::array<double, 2> move_m{};       ///< Verlet's move in this step, without what the bars add to it
     std::array<double, 2> unrelaxed_m{};  ///< the position before the bars' moves of this step

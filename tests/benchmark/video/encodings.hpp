@@ -20,7 +20,7 @@ struct Encoding {
 /// The presets and crf of x264, 4:4:4, and the other lossy codecs, each with its defaults.
 [[nodiscard]] std::vector<Encoding> usual_encodings();
 
-/// What is measured.
+/// A render to measure.
 struct EncodingDef {
     Scene scene;                ///< with the settings
     FilmDef film;               ///< which OpenGL draws
@@ -28,7 +28,7 @@ struct EncodingDef {
     std::int64_t frames = 240;  ///< of the video, if the scene has as many; >= 1
 };
 
-/// What was measured of a video.
+/// Figures of a video.
 struct MeasuredEncoding {
     std::string codec;       ///< short name
     std::string preset;      ///< empty if the codec has none

@@ -140,7 +140,7 @@ class StageClock {
     std::vector<Stage> stages_;
 };
 
-/// The stages, each by itself, one thread for all; the video is made anew at `path`.
+/// The stages, each by itself, in one thread. Replaces the video at `path`.
 json measure_stages(const BenchDef& def, const std::string& path) {
     const VideoDef& video = def.scene.video;
     const std::int64_t frames = frames_of(def);

@@ -14,7 +14,7 @@
 
 namespace corda::benchmark {
 
-/// What is measured, and how.
+/// Renders to measure.
 struct BenchDef {
     Scene scene;                ///< with the size and the preset of a case
     FilmDef film;               ///< which OpenGL draws
@@ -30,7 +30,7 @@ struct Stage {
     double cpu_s = 0.0;  ///< of all threads
 };
 
-/// What was measured of videos of one size and preset.
+/// Figures of videos of one size and preset.
 struct Measured {
     std::int64_t frames = 0;
     int jobs = 0;                  ///< chunks that were made at a time in the render of the peak

@@ -137,7 +137,7 @@ TEST(Fonts, ShowUnknownCharactersAsBoxes) {
     }
     EXPECT_EQ(written("\xff", 32).coverage, replaced.coverage);
     EXPECT_EQ(written("\xc3", 32).coverage, replaced.coverage);
-    // The rest goes on.
+    // A character after a cut one is drawn.
     EXPECT_EQ(written("\xc3z", 32).coverage, written("\ufffdz", 32).coverage);
 }
 

@@ -36,7 +36,7 @@ class StringContacts {
     [[nodiscard]] double error_share(std::size_t link, double time_s) const;
 
     /// Error of positions in metres from which the last snap may have been another one: a second slack link
-    /// would have been the first to snap, or the one that did would not have reached its rest length.
+    /// would have been the first to snap, or the link that snapped would not have reached its rest length.
     /// Infinite if no slack link snapped.
     [[nodiscard]] double margin_m() const { return margin_m_; }
 
