@@ -166,10 +166,12 @@ TEST_P(AutoBoundsFound, IsTrue) {
 }
 
 // A link that a snap sends inwards slowly and that does not come back; steps that a run and its check divided
-// alike; a link that turns back right after a step.
+// alike; a link that turns back right after a step; checks that shared the rounding of snaps; rounding that a
+// ratio of masses of 7e4 magnifies.
 INSTANTIATE_TEST_SUITE_P(Of, AutoBoundsFound,
                          testing::Values(Found{"string_many", 97}, Found{"braced", 167},
-                                         Found{"grazing_snap", 1783}),
+                                         Found{"grazing_snap", 1783}, Found{"string_many", 1037},
+                                         Found{"mass_mix", 1018}),
                          [](const auto& param) {
                              return param.param.family + std::string("_") +
                                     std::to_string(param.param.number);

@@ -43,7 +43,8 @@ double error_m(const State& state, Vec2 origin_m, const Truth& truth) {
     return largest_m;
 }
 
-/// True if the truth with other steps, and so with other rounding, differs far less than the error.
+/// True if the truth with other steps, and so with other rounding, differs far less than the error, and if
+/// its bars keep their lengths as well.
 bool is_sure(Film& film, const BoundCase& given, const Verdict& verdict) {
     if (given.truth) return true;
     ExtendedMotion truth(film.system(), given.scene.world, given.start);
@@ -53,7 +54,7 @@ bool is_sure(Film& film, const BoundCase& given, const Verdict& verdict) {
         if (!other.advance_to(between_s) || !other.advance_to(film.time_s(k))) return false;
         if (!truth.advance_to(film.time_s(k))) return false;
     }
-    Real largest_m = 0;
+    Real largest_m = truth.length_error_m();
     for (std::size_t i = 0; i < film.system().particle_count(); ++i)
         largest_m = std::max(largest_m, std::hypot(truth.x_m(i) - other.x_m(i), truth.y_m(i) - other.y_m(i)));
     return largest_m <= 0.1 * *verdict.ratio * verdict.bound_m;

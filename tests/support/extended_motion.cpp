@@ -88,6 +88,13 @@ bool ExtendedMotion::advance_to(double time_s) {
     return true;
 }
 
+ExtendedMotion::Real ExtendedMotion::length_error_m() const {
+    Real largest_m = 0;
+    for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(rigid_.size()); ++k)
+        largest_m = std::max(largest_m, std::abs(apart(y_, bar(k), 0).norm() - std::sqrt(bar(k).square)));
+    return largest_m;
+}
+
 ExtendedMotion::Pair ExtendedMotion::apart(const Vector& y, const Link& link, Eigen::Index first) const {
     const auto i = static_cast<Eigen::Index>(link.a);
     const auto j = static_cast<Eigen::Index>(link.b);

@@ -40,6 +40,8 @@ class ExtendedMotion {
 
     [[nodiscard]] Real x_m(std::size_t i) const { return y_[static_cast<Eigen::Index>(i)]; }
     [[nodiscard]] Real y_m(std::size_t i) const { return y_[count_ + static_cast<Eigen::Index>(i)]; }
+    /// Drift of the lengths of the rigid bars that pull, at most, in m.
+    [[nodiscard]] Real length_error_m() const;
     /// Number of times at which a link of a string started or stopped pulling.
     [[nodiscard]] int events() const { return events_; }
 

@@ -43,13 +43,15 @@ void move_by_rounding(System& system, std::uint32_t order) {
 }
 
 /// Per link of a string, twice the rounding of lengths at which it comes taut: a run and a check that rounded
-/// alike would both miss what a snap makes of it.
-std::vector<double> rounding_of_snaps_m(const System& string) {
+/// alike would both miss what a snap makes of it. Every other check comes taut that much earlier.
+std::vector<double> rounding_of_snaps_m(const System& string, std::size_t check) {
     constexpr double kOfALink = 2e-14;
     constexpr double kOfAPlace = 16.0 * std::numeric_limits<double>::epsilon();
+    const double sign = check % 2 == 0 ? 1.0 : -1.0;
     const double length_m = links_length_m(string, string.bodies.front());
     std::vector<double> longer_m;
-    for (const Bar& link : string.bars) longer_m.push_back(kOfALink * link.rest_m + kOfAPlace * length_m);
+    for (const Bar& link : string.bars)
+        longer_m.push_back(sign * (kOfALink * link.rest_m + kOfAPlace * length_m));
     return longer_m;
 }
 
@@ -131,12 +133,21 @@ double hidden_m(const System& system, const Trial& trial) {
                : check->tolerance * largest_length_m(system);
 }
 
-/// True if rounding, which moves a chain about as much as a tolerance of 1e-12, is small compared with a
-/// run's error.
-bool is_far_from_rounding(const MethodDef& run) {
+/// True if rounding is small compared with a run's error. It moves a chain of equal masses about as much as a
+/// tolerance of 1e-12, and a light particle more: the rounding of a tension that carries heavy ones grows
+/// with the ratio of masses.
+bool is_far_from_rounding(const System& system, const MethodDef& run) {
     constexpr double kNear = 2e-9;
     const auto* exact = std::get_if<ExactDef>(&run);
-    return exact != nullptr && exact->tolerance > kNear;
+    if (exact == nullptr) return false;
+    double lightest_1_kg = 0.0;
+    double heaviest_1_kg = HUGE_VAL;
+    for (const double inverse_1_kg : system.inverse_mass_1_kg) {
+        if (inverse_1_kg == 0.0) continue;  // pinned
+        lightest_1_kg = std::max(lightest_1_kg, inverse_1_kg);
+        heaviest_1_kg = std::min(heaviest_1_kg, inverse_1_kg);
+    }
+    return exact->tolerance > kNear * std::max(1.0, lightest_1_kg / heaviest_1_kg);
 }
 
 /// Of positions in the scene's coordinates, as files give them; and of the start and the lengths of bars,
@@ -214,7 +225,8 @@ class Checks::Check : NonCopyable {
         const auto* exact = std::get_if<ExactDef>(&method);
         if (exact != nullptr && material.is_string && material.compliance_1_n == 0.0) {
             auto string = std::make_unique<StringPart>(
-                system_, turned, exact->tolerance, longer_m.empty() ? rounding_of_snaps_m(system) : longer_m);
+                system_, turned, exact->tolerance,
+                longer_m.empty() ? rounding_of_snaps_m(system, number) : longer_m);
             string_ = string.get();
             solver_ = std::move(string);
         } else {
@@ -397,7 +409,7 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
     std::int64_t i = 0;
     const CancelScope progress = report_frames(def, i);
     Simulation run(system, world, trial.method, interval_s);
-    const bool has_one = is_far_from_rounding(trial.method) ||
+    const bool has_one = is_far_from_rounding(system, trial.method) ||
                          (kind.is_first && std::holds_alternative<RattleDef>(trial.method));
     Checks checks(system, world, trial.check, interval_s, has_one ? 1 : Checks::kMaxCount);
     Comparison comparison(def.tolerance_m);
