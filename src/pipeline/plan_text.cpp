@@ -263,7 +263,9 @@ std::string method_caption(const Plan& plan, const std::optional<double>& error_
 
 Error pipeline::explained(const Refusal& refusal, const Scene& scene) {
     std::string place = scene.source.empty() ? "" : scene.source + ": ";
-    if (refusal.reason() == Refusal::Reason::kUnknownTensions) {
+    if (refusal.reason() == Refusal::Reason::kUnknownTensions && !scene.tensions_place.empty()) {
+        place = scene.tensions_place + ": ";
+    } else if (refusal.reason() == Refusal::Reason::kUnknownTensions) {
         if (scene.style.color_by == ColorBy::kTension) place += "style.color_by: ";
         if (scene.style.arrows == Arrows::kTension) place += "style.arrows: ";
     }

@@ -14,6 +14,10 @@ namespace {
 constexpr std::size_t kMaxShown = 20;
 constexpr std::size_t kMaxKept = 10'000;  // bounds the memory for a file that is not a scene at all
 
+toml::source_position begin_of(const toml::source_region& region) {
+    return region.begin ? region.begin : toml::source_position{1, 1};
+}
+
 }  // namespace
 
 std::string excerpt(std::string_view text, std::size_t longest) {
@@ -66,12 +70,16 @@ void Problems::add(const toml::source_region& region, std::string_view path, std
         end = key.find_first_of(".[", end + 1);
         unsound_.emplace(key.substr(0, end));
     }
-    const bool is_setting = region.path && region.path != document_path_;
-    const toml::source_position begin = region.begin ? region.begin : toml::source_position{1, 1};
-    std::string place = is_setting ? *region.path : source_name_;
-    if (!is_setting && has_places_) place += fmt::format(":{}:{}", begin.line, begin.column);
-    if (!place.empty()) place += ": ";
-    problems_.push_back({is_setting, begin.line, begin.column, fmt::format("{}{}: {}", place, key, problem)});
+    const toml::source_position begin = begin_of(region);
+    problems_.push_back({is_setting(region), begin.line, begin.column,
+                         fmt::format("{}: {}", place_of(region, path), problem)});
+}
+
+std::string Problems::place_of(const toml::source_region& region, std::string_view path) const {
+    std::string place = is_setting(region) ? *region.path : source_name_;
+    const toml::source_position begin = begin_of(region);
+    if (!is_setting(region) && has_places_) place += fmt::format(":{}:{}", begin.line, begin.column);
+    return place.empty() ? file_key(path) : fmt::format("{}: {}", place, file_key(path));
 }
 
 void Problems::add(const std::string& message) {

@@ -46,6 +46,9 @@ class Problems {
     /// only repeat its problem.
     [[nodiscard]] bool is_sound(std::string_view key) const { return !unsound_.contains(file_key(key)); }
 
+    /// "place: key", as the message of a problem begins.
+    [[nodiscard]] std::string place_of(const toml::source_region& region, std::string_view key) const;
+
     [[nodiscard]] bool empty() const { return problems_.empty(); }
 
     /// Throws one Error (kInvalidScene) with the first problems, one per line in the order of the file, then
@@ -63,6 +66,9 @@ class Problems {
     };
 
     [[nodiscard]] std::string file_key(std::string_view key) const;
+    [[nodiscard]] bool is_setting(const toml::source_region& region) const {
+        return region.path && region.path != document_path_;
+    }
 
     std::vector<std::size_t> file_index_;
     std::string source_name_;

@@ -85,8 +85,9 @@ struct SolverSection {
 /// Sets `scene.solver` and `scene.body_solvers` too.
 [[nodiscard]] SolverSection read_solver(const Sections& sections, Scene& scene);
 [[nodiscard]] BodyStyleDef read_body_style(const TableReader& body, bool takes_link_colors);
-/// Adds a problem if colours or arrows show a quantity that a named method does not compute.
-void check_tensions(const Sections& sections, const SolverSection& solver, const StyleDef& style);
+/// Adds a problem if colours or arrows show a quantity that a named method does not compute. Sets
+/// `scene.tensions_place`.
+void check_tensions(const Sections& sections, const SolverSection& solver, Scene& scene);
 
 /// A problem of several values together.
 struct DefProblem {

@@ -99,7 +99,7 @@ Scene parse_scene(std::string_view toml, const std::string& source_name, const s
     if (document.contains("golden")) read_section(sections.golden, scene.golden.emplace());
     const SceneSize size = count_bodies(sections, solver, scene);
     check_work(sections, solver, size, scene);
-    check_tensions(sections, solver, scene.style);
+    check_tensions(sections, solver, scene);
     check_cancelled();
     if (size.fits) read_bodies(sections, size, solver, scene);
     problems.throw_if_any();

@@ -122,6 +122,7 @@ struct Scene {
     SolverDef solver;                         ///< of the bodies that `body_solvers` does not name
     std::vector<BodySolverDef> body_solvers;  ///< empty: `solver` moves all
     StyleDef style;
+    std::string tensions_place;  ///< where a file asks to show tensions: "a.toml:9:10: style.arrows"
     OverlayDef overlay;
     CameraDef camera;
     VideoDef video;

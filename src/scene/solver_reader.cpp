@@ -81,20 +81,22 @@ SolverSection read_solver(const Sections& sections, Scene& scene) {
     return section;
 }
 
-void check_tensions(const Sections& sections, const SolverSection& solver, const StyleDef& style) {
+void check_tensions(const Sections& sections, const SolverSection& solver, Scene& scene) {
     struct Shown {
         bool tensions;
         const char* key;
         const char* others;
     };
     for (const auto& [tensions, key, others] :
-         {Shown{style.color_by == ColorBy::kTension, "color_by", "\"speed\" or \"strain\""},
-          Shown{style.arrows == Arrows::kTension, "arrows", "\"velocity\" or \"weight\""}}) {
+         {Shown{scene.style.color_by == ColorBy::kTension, "color_by", "\"speed\" or \"strain\""},
+          Shown{scene.style.arrows == Arrows::kTension, "arrows", "\"velocity\" or \"weight\""}}) {
         if (!tensions) continue;
+        const Value shown = *sections.style.find(key);
+        scene.tensions_place = shown.place();
         for (const SolverGroup& group : solver.groups) {
             const std::optional<MethodDef> method = method_in(group.def);
             if (!method || sim::knows_tensions(*method)) continue;
-            sections.style.find(key)->add_problem(
+            shown.add_problem(
                 fmt::format("method \"{}\" knows no tensions; give {}, or another solver.method",
                             method_name(*method), others));
             break;

@@ -71,6 +71,8 @@ class Value {
     }
 
     void add_problem(std::string_view problem) const { problems_->add(node_->source(), path_, problem); }
+    /// Its place and its key in messages.
+    [[nodiscard]] std::string place() const { return problems_->place_of(node_->source(), path_); }
 
   private:
     Problems* problems_;

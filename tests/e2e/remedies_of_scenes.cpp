@@ -412,7 +412,7 @@ INSTANTIATE_TEST_SUITE_P(
         Remedy{"tension_arrows_of_dependent_bars",
                net_scene(kGrid, "[style]\narrows = \"tension\"\n"),
                "plan SCENE",
-               "scene.toml: style.arrows: tensions are asked for, which the method does not know",
+               "scene.toml:6:10: style.arrows: tensions are asked for, which the method does not know",
                {{{"\"tension\"", "\"velocity\""}},
                 {{"\"tension\"", "\"weight\""}},
                 {{kGrid, kGrid + "compliance = 1e-4\n"}}}}),

@@ -58,7 +58,8 @@ TEST(Colours, OfUnknownTensionsAreRefused) {
         "stiff.toml");
     const auto failure = test::failure_of([&] { static_cast<void>(Film(scene)); });
     EXPECT_EQ(failure.code, ExitCode::kInvalidScene);
-    EXPECT_NE(failure.message.find("stiff.toml: "), std::string::npos) << failure.message;
+    EXPECT_NE(failure.message.find("stiff.toml:5:12: style.color_by: "), std::string::npos)
+        << failure.message;
     EXPECT_NE(failure.message.find("set style.color_by"), std::string::npos) << failure.message;
 }
 
