@@ -45,6 +45,10 @@ struct KeyStep {
 void apply_setting(toml::table& document, const Setting& setting, Problems& problems,
                    const std::string& place = "");
 
+/// Why a dotted key does not fit the document, such as an index beyond a list, with a remedy; empty if it
+/// does. A key that fits is 0 from then on.
+[[nodiscard]] std::string misfit_of(toml::table& document, std::string_view key);
+
 /// Checks a document against the schema: unknown and missing keys, types, ranges and keys of other methods.
 /// Bad values are taken out of the document, so that their defaults stand in for them.
 void check_document(toml::table& document, Problems& problems);

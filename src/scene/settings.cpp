@@ -85,7 +85,8 @@ class SettingWriter {
         } else {
             toml::table& table = as_table();
             if (!table.contains(step.name)) {
-                if (index_follows) fail(fmt::format("the scene gives no list \"{}\"", step.name));
+                if (index_follows)
+                    fail(fmt::format("the scene gives no list \"{0}\"; add {0} to it first", step.name));
                 toml::table made = toml::parse("value = {}", std::string_view(label_));
                 toml::node& node = *made.get("value");
                 table.insert_or_assign(toml::key(step.name, toml::source_region(node.source())),
@@ -110,9 +111,12 @@ class SettingWriter {
 
     toml::node* element(const KeyStep& step) {
         toml::array* list = node_->as_array();
-        if (list == nullptr) fail(fmt::format("{}, not a list", described(*node_)));
+        if (list == nullptr) fail(fmt::format("{}, not a list; leave out the index", described(*node_)));
         if (step.index >= list->size()) {
-            fail(fmt::format("index {} is out of range; the list has {}", step.index, list->size()));
+            fail(fmt::format("index {} is out of range; the list has {}{}", step.index, list->size(),
+                             list->size() > 1 ? fmt::format("; give 0 .. {}", list->size() - 1)
+                             : list->empty()  ? ""
+                                              : "; give 0"));
         }
         return list->get(step.index);
     }
@@ -121,7 +125,8 @@ class SettingWriter {
         if (node_->is_array_of_tables()) {
             fail(fmt::format("this is a list of tables; give an index: {}[0]", path_));
         }
-        if (!node_->is_table()) fail(fmt::format("{}, not a table", described(*node_)));
+        if (!node_->is_table())
+            fail(fmt::format("{}, not a table; end the key at {}", described(*node_), path_));
         return *node_->as_table();
     }
 
@@ -134,8 +139,10 @@ class SettingWriter {
     }
 
     [[noreturn]] void fail(const std::string& problem) const {
-        const std::string place = path_.empty() ? label_ : fmt::format("{}: {}", label_, path_);
-        throw_error(ExitCode::kInvalidScene, "{}: {}", place, problem);
+        std::string message = problem;
+        for (const std::string& place : {path_, label_})
+            if (!place.empty()) message = fmt::format("{}: {}", place, message);
+        throw Error(ExitCode::kInvalidScene, message);
     }
 
     toml::node* node_;
@@ -183,6 +190,17 @@ void apply_setting(toml::table& document, const Setting& setting, Problems& prob
     } catch (const Error& error) {
         problems.add(error.what());
     }
+}
+
+std::string misfit_of(toml::table& document, std::string_view key) {
+    const auto steps = parse_key(key);
+    if (!steps) return fmt::format("\"{}\" is not a key; give one such as rope[0].mass", excerpt(key));
+    try {
+        SettingWriter(document, "").write(*steps, "0");
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
 }
 
 }  // namespace corda::scene

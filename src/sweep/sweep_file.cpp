@@ -406,14 +406,10 @@ void refuse_overlaps(const SweepDef& sweep, const toml::table& vary, Problems& p
 void check_varied_keys(const SweepDef& sweep, const toml::table& vary, Problems& problems) {
     toml::table document = scene::parse_document(sweep.scene_toml, sweep.scene_name);
     for (const VariedKey& varied : sweep.vary) {
-        try {
-            Problems misfits(sweep.scene_name);
-            scene::apply_setting(document, varied.key + "=0", misfits, sweep.scene_name);
-            misfits.throw_if_any();
-        } catch (const Error& error) {
+        const std::string misfit = scene::misfit_of(document, varied.key);
+        if (!misfit.empty())
             problems.add(vary.get(varied.key)->source(), "vary." + Json(varied.key).dump(),
-                         fmt::format("does not fit the scene: {}", error.what()));
-        }
+                         fmt::format("does not fit {}: {}", sweep.scene_name, misfit));
     }
     problems.throw_if_any();
 }

@@ -81,11 +81,12 @@ TEST(SceneSettings, ThatDoNotFitTheFileAreInvalid) {
         return error.message;
     };
     EXPECT_EQ(message("rope[1].mass=2"),
-              "--set rope[1].mass=2: rope: index 1 is out of range; the list has 1");
+              "--set rope[1].mass=2: rope: index 1 is out of range; the list has 1; give 0");
     EXPECT_EQ(message("rope[99999999999].mass=2").substr(0, 24), "--set rope[99999999999].");
     EXPECT_THAT(message("rope.mass=2"), HasSubstr("rope: this is a list of tables; give an index: rope[0]"));
-    EXPECT_THAT(message("world.gravity.x=2"), HasSubstr("world.gravity: 1 is an integer, not a table"));
-    EXPECT_THAT(message("world[0]=2"), HasSubstr("world: this is a table, not a list"));
+    EXPECT_THAT(message("world.gravity.x=2"),
+                HasSubstr("world.gravity: 1 is an integer, not a table; end the key at world.gravity"));
+    EXPECT_THAT(message("world[0]=2"), HasSubstr("world: this is a table, not a list; leave out the index"));
     EXPECT_THAT(message("net[0].mass=2"), HasSubstr("the scene gives no list \"net\""));
     EXPECT_THAT(message("rope[0].line.from[0]=2"), HasSubstr("the scene gives no list \"from\""));
 }

@@ -156,12 +156,13 @@ TEST_F(SweepFile, VariedKeysAreThoseOfScenes) {
          ":5:1: vary.\"rope\": ", "quote a dotted key, such as \"rope[0].hang.angle_deg\""},
         {"samples = 1\n[vary]\n\"mass\" = [1]\n", ":5:1: vary.\"mass\": ", "no key of a scene"},
         {"samples = 1\n[vary]\n\"rope[7].mass\" = [1]\n", ":5:18: vary.\"rope[7].mass\": ",
-         "does not fit the scene: scene.toml rope[7].mass=0: rope: index 7 is out of range; the list has 1"},
+         "does not fit scene.toml: rope: index 7 is out of range; the list has 1; give 0"},
         {"samples = 1\n[vary]\n\"net[0].mass\" = [1]\n",
-         ":5:17: vary.\"net[0].mass\": ", "the scene gives no list \"net\""},
+         ":5:17: vary.\"net[0].mass\": ", "the scene gives no list \"net\"; add net to it first"},
         {"samples = 1\n[vary]\n\"rope.mass\" = [1]\n",
          ":5:15: vary.\"rope.mass\": ", "give an index: rope[0]"},
-        {"samples = 1\n[vary]\n\"rope[a].mass\" = [1]\n", ":5:18: vary.\"rope[a].mass\": ", "is not a key"},
+        {"samples = 1\n[vary]\n\"rope[a].mass\" = [1]\n",
+         ":5:18: vary.\"rope[a].mass\": ", "is not a key; give one such as rope[0].mass"},
     });
 }
 
