@@ -11,6 +11,8 @@
 #include "corda/core/timeline.hpp"
 #include "corda/scene/read_file.hpp"
 #include "corda/scene/schema.hpp"
+#include "corda/scene/write_scene.hpp"
+#include "corda/view/font.hpp"
 
 namespace corda::app {
 namespace {
@@ -176,13 +178,16 @@ bool SceneOptions::gives_size() const {
                                [](const Setting& setting) { return setting.starts_with("video.size"); });
 }
 
-Scene SceneOptions::load_from(const Provenance& origin) const {
-    return load_with(settings, of_options_,
-                     [&](const std::vector<Setting>& some) { return scene_of(origin, from_, some); });
+Scene SceneOptions::load_from(const Console& console, const Provenance& origin) const {
+    Scene scene = load_with(settings, of_options_,
+                            [&](const std::vector<Setting>& some) { return scene_of(origin, from_, some); });
+    const std::string change = font_change(origin, view::fallback_names(shown_texts(scene)));
+    if (!change.empty()) console.warning(fmt::format("{}: {}: pixels may differ", from_, change));
+    return scene;
 }
 
 Scene SceneOptions::load(const Console& console) const {
-    Scene scene = is_from() ? load_from(provenance(console)) : parse({}, {}, {});
+    Scene scene = is_from() ? load_from(console, provenance(console)) : parse({}, {}, {});
     if (is_from()) check_size_from_file(scene.video);
     if (const std::string notice = cost_notice(scene); !notice.empty()) console.info(notice);
     warn_of_unseen_texts(console, scene);
@@ -194,7 +199,7 @@ std::vector<Scene> SceneOptions::load_panels(const Console& console,
     const bool has_panels = is_from() && provenance(console).columns > 0;
     std::vector<Scene> scenes;
     if (has_panels) {
-        for (const Provenance& part : provenance(console).parts) scenes.push_back(load_from(part));
+        for (const Provenance& part : provenance(console).parts) scenes.push_back(load_from(console, part));
         if (!gives_size()) check_size_from_file(panels_video(scenes, provenance(console).columns));
     } else {
         scenes.push_back(load(console));

@@ -116,12 +116,7 @@ Cause cause_of(const Provenance& kept, const GoldenRecord& now, const std::vecto
     if (!reference.color_scale.empty() && reference.color_scale != now.color_scale)
         return drawn(fmt::format("another scale of colours: {}, now {}", reference.color_scale,
                                  now.color_scale.empty() ? "none" : now.color_scale));
-    const auto words = [](const std::vector<std::string>& names) {
-        return names.empty() ? std::string("none") : fmt::format("{}", fmt::join(names, ", "));
-    };
-    if (kept.fonts != fonts)
-        return drawn(
-            fmt::format("other fonts besides DejaVu Sans: {}, now {}", words(kept.fonts), words(fonts)));
+    if (const std::string change = font_change(kept, fonts); !change.empty()) return drawn(change);
     if (kept.corda != version())
         return drawn(fmt::format("drawn by another version of Corda: {}, now {}", kept.corda, version()));
     if (reference.renderer != now.renderer)

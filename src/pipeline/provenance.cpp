@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <zlib.h>
 #include <nlohmann/json.hpp>
 
@@ -363,6 +364,14 @@ std::string provenance_text(Provenance provenance) {
         provenance.columns = 0;
     }
     return text_of(json_of(provenance));
+}
+
+std::string font_change(const Provenance& provenance, const std::vector<std::string>& now) {
+    if (provenance.fonts == now) return {};
+    const auto words = [](const std::vector<std::string>& names) {
+        return names.empty() ? std::string("none") : fmt::format("{}", fmt::join(names, ", "));
+    };
+    return fmt::format("other fonts besides DejaVu Sans: {}, now {}", words(provenance.fonts), words(now));
 }
 
 std::string left_out_of(const std::string& text) {

@@ -89,6 +89,9 @@ inline constexpr const char* kProvenanceKey = "provenance";
 /// numbers in hexadecimal.
 [[nodiscard]] std::string provenance_text(Provenance provenance);
 
+/// "other fonts besides DejaVu Sans: A 1.0, now none"; empty if `now` are the fonts of the file.
+[[nodiscard]] std::string font_change(const Provenance& provenance, const std::vector<std::string>& now);
+
 /// Why a file with such a text carries no scene, or not all of its parts; empty if it does.
 [[nodiscard]] std::string left_out_of(const std::string& text);
 

@@ -20,7 +20,9 @@ namespace {
 using nlohmann::json;
 using test::run_corda;
 using test::ScratchFolder;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 /// Ropes that cross, a ball, a ring, a see-through colour and a cloth.
 const char* const kSceneOfFigures = R"(schema = 1
@@ -243,6 +245,30 @@ TEST_F(Figures, DrawSmallCharactersAsOutlinesWhereTheFontHasBitmaps) {
                           "overlay={text_px=12,time=false,scale_bar=false}"},
                          60);
     ::unsetenv("FONTCONFIG_FILE");
+}
+
+TEST_F(Figures, WarnOfOtherFontsThanThoseOfTheFile) {
+    // The same font by its own name and by another one.
+    const auto fonts = [&](const std::string& name, const std::string& edit) {
+        return "FONTCONFIG_FILE=" +
+               folder_.write(name + ".conf",
+                             "<fontconfig><dir>/usr/share/fonts/truetype/arphic</dir><cachedir>" +
+                                 folder_.file(name) + "</cachedir>" + edit + "</fontconfig>");
+    };
+    const std::string own = fonts("own", "");
+    const std::string other =
+        fonts("other", "<match target=\"scan\"><edit name=\"family\"><string>Other</string></edit></match>");
+    ASSERT_EQ(
+        run_corda({"still", scene_, "--at", "0", "-o", folder_.file("a.png"), "--set", "overlay.title=振"},
+                  own)
+            .exit_code,
+        0);
+    const std::vector<std::string> again{
+        "still", "--from", folder_.file("a.png"), "-o", folder_.file("b.png"), "--force"};
+    EXPECT_THAT(run_corda(again, own).err, Not(HasSubstr("fonts")));
+    EXPECT_THAT(run_corda(again, other).err,
+                AllOf(HasSubstr("a.png: other fonts besides DejaVu Sans: AR PL "), HasSubstr(", now Other "),
+                      HasSubstr(": pixels may differ")));
 }
 
 TEST_F(Figures, HaveTheSameBytesOnEveryRun) {
