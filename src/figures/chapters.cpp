@@ -117,10 +117,10 @@ std::vector<pipeline::TrackedParticle> followed_of(const MotionSummary& motion) 
 
 /// How many bodies turn about their pins: near a point, the angle about it has no meaning.
 std::ptrdiff_t turning_count(const System& system, const MotionSummary& motion) {
-    constexpr double kNear = 0.1;
     return std::ranges::count_if(motion.bodies, [&](const BodyCurves& body) {
         const double length_m = links_length_m(system, system.bodies[body.followed.body]);
-        return body.followed.pin && body.followed.is_free_end && body.nearest_m >= kNear * length_m;
+        return body.followed.pin && body.followed.is_free_end &&
+               body.nearest_m >= pipeline::kNearPin * length_m;
     });
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -48,6 +49,8 @@ struct Subject {
             if (tracked.body < tips.size()) tips[tracked.body] = tracked.particle;
         std::erase_if(turning, [](const TrackedParticle& one) { return !one.pin || !one.is_free_end; });
         turning.resize(std::min(turning.size(), kMaxCurves));
+        for (const TrackedParticle& one : turning)
+            near_m.push_back(kNearPin * links_length_m(of, of.bodies[one.body]));
     }
 
     /// Curves of bodies, with names if the scene has others; of many, only labels tell them apart.
@@ -74,7 +77,14 @@ struct Subject {
     double end_s;
     double size_m = 0.0;
     double mass_kg = 0.0;
+    [[nodiscard]] bool is_near_pin(std::size_t k, const State& state) const {
+        const std::size_t i = turning[k].particle;
+        const std::size_t pin = *turning[k].pin;
+        return sim::length(state.x_m[i] - state.x_m[pin], state.y_m[i] - state.y_m[pin]) < near_m[k];
+    }
+
     std::vector<TrackedParticle> turning;  ///< free ends of bodies with one pin
+    std::vector<double> near_m;            ///< distance of each from its pin below which its curves break
     std::vector<std::size_t> tips;         ///< of ropes 0 and 1
 };
 
@@ -82,7 +92,7 @@ struct Subject {
 struct Sample {
     const State& state;
     const std::function<Energy(const State&)>& energy_of;
-    std::vector<CurvePoint> turns;  ///< see turning_of(); one per particle of Subject::turning
+    std::vector<CurvePoint> turns;  ///< see turning_of(); one per particle of Subject::turning; NaN: a gap
 };
 
 /// One kind of plot: the fields that it needs of states, its axes and empty curves, and the values that a
@@ -212,14 +222,16 @@ std::vector<PlotData> LivePlotData::read(const std::vector<MethodDef>& methods, 
     const Timeline timeline(fps, fps.last_frame_within(scene_->world.duration_s), times_s());
     const std::size_t stride = timeline.size() / kMaxSamples + 1;
     const StateFields fields = readings();
-    std::vector<CurvePoint> turns;
+    std::vector<CurvePoint> turns(subject.turning.size());
     for (std::size_t i = 0; i < timeline.size() && timeline.time_s(i) <= end_s; i += stride) {
         const State& state = state_at(timeline.time_s(i));
         Sample sample{state, energy_of, {}};
-        for (std::size_t k = 0; fields.velocities && k < subject.turning.size(); ++k)
-            sample.turns.push_back(
-                turning_of(subject.turning[k], state, turns.empty() ? nullptr : &turns[k]));
-        turns = sample.turns;
+        for (std::size_t k = 0; fields.velocities && k < turns.size(); ++k) {
+            turns[k] = turning_of(subject.turning[k], state, i == 0 ? nullptr : &turns[k]);
+            constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+            sample.turns.push_back(subject.is_near_pin(k, state) ? CurvePoint{.x = kNone, .y = kNone}
+                                                                 : turns[k]);
+        }
         for (std::size_t p = 0; p < plots.size(); ++p) {
             const std::vector<CurvePoint> values = kind_of(plots[p]).values(subject, sample);
             for (std::size_t k = 0; k < values.size(); ++k)

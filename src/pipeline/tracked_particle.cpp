@@ -72,7 +72,11 @@ view::CurvePoint turning_of(const TrackedParticle& tracked, const State& state,
     const double rate = (dx_m * state.vy_m_s[i] - dy_m * state.vx_m_s[i]) / (dx_m * dx_m + dy_m * dy_m);
     double angle = angle_rad(dx_m, -dy_m);
     if (last != nullptr) {
-        const double expected = last->x + 0.5 * (last->y + rate) * (state.time_s - last->time_s);
+        // The geometric mean of the rates is that of a uniform rotation; past the pin in a straight line, it
+        // gives the sine of the turn.
+        const double square = last->y * rate;
+        const double mean = square > 0.0 ? std::copysign(std::sqrt(square), rate) : 0.0;
+        const double expected = last->x + mean * (state.time_s - last->time_s);
         if (std::isfinite(expected)) angle += kTurn * std::round((expected - angle) / kTurn);
     }
     return {state.time_s, angle, rate};

@@ -28,6 +28,9 @@ struct TrackedParticle {
 [[nodiscard]] std::vector<TrackedParticle> tracked_particles(const System& system,
                                                              std::size_t most = kMaxBodies);
 
+/// Within this share of its body's length from its pin, a tracked particle has no angle worth showing.
+inline constexpr double kNearPin = 0.1;
+
 /// Angle of the way from the pin of a tracked particle, which must have one, in rad from straight down,
 /// positive towards +x, and its rate in rad/s, as x and y. Turns are counted on from the point of an earlier
 /// state, if there is one, by the rate: between two states, a fast rope may turn by more than half a turn.

@@ -18,6 +18,7 @@ struct ValueRange {
     double low = std::numeric_limits<double>::infinity();
     double high = -std::numeric_limits<double>::infinity();
 
+    /// NaN does not count.
     void include(double value) {
         low = std::min(low, value);
         high = std::max(high, value);

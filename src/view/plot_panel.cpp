@@ -59,6 +59,10 @@ ValueRange range_of(const PlotData& data, double CurvePoint::*value) {
     return range;
 }
 
+bool is_gap(const PixelPoint& point) {
+    return std::isnan(point.y);
+}
+
 Color faint(Color color, std::uint8_t alpha) {
     return {color.r, color.g, color.b, alpha};
 }
@@ -166,13 +170,25 @@ void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_color
     is_shown_ = is_drawable && place_box(is_over_time, least_label_px, font);
     if (!is_shown_) return;
     for (PixelCurve& curve : curves_) {
-        std::vector<PixelPoint> points;
-        for (const CurvePoint& point : curve.samples)
-            points.push_back({plot_.x.px(point.x), plot_.y.px(point.y)});
-        for (const std::size_t k : visible_points(points)) {
-            curve.points.push_back(points[k]);
-            curve.times_s.push_back(curve.samples[k].time_s);
+        std::vector<PixelPoint> points;  // up to a gap
+        const auto add_points = [&](std::size_t end) {
+            for (const std::size_t k : visible_points(points)) {
+                curve.points.push_back(points[k]);
+                curve.times_s.push_back(curve.samples[end - points.size() + k].time_s);
+            }
+            points.clear();
+        };
+        for (std::size_t k = 0; k < curve.samples.size(); ++k) {
+            const CurvePoint& point = curve.samples[k];
+            const PixelPoint at{plot_.x.px(point.x), plot_.y.px(point.y)};
+            if (is_gap(at) && !points.empty()) {
+                add_points(k);
+                curve.points.push_back(at);
+                curve.times_s.push_back(point.time_s);
+            }
+            if (!is_gap(at)) points.push_back(at);
         }
+        if (!points.empty()) add_points(curve.samples.size());
     }
 }
 
@@ -271,9 +287,11 @@ void PlotPanel::draw_curves(double time_s, DrawList& list) const {
         const auto later = std::lower_bound(curve.times_s.begin(), curve.times_s.end(), now.time_s);
         const auto end = static_cast<std::size_t>(later - curve.times_s.begin());
         const PixelPoint dot{plot_.x.px(now.x), plot_.y.px(now.y)};
-        for (std::size_t k = end - std::min(end, kMaxPoints); k < end; ++k)
-            list.add_capsule(curve.points[k], k + 1 < end ? curve.points[k + 1] : dot, radius_px);
-        list.add_capsule(dot, dot, kDotPerCurve * radius_px);
+        for (std::size_t k = end - std::min(end, kMaxPoints); k < end; ++k) {
+            const PixelPoint& next = k + 1 < end ? curve.points[k + 1] : dot;
+            if (!is_gap(curve.points[k]) && !is_gap(next)) list.add_capsule(curve.points[k], next, radius_px);
+        }
+        if (!is_gap(dot)) list.add_capsule(dot, dot, kDotPerCurve * radius_px);
     }
 }
 

@@ -28,7 +28,8 @@ struct PlotData {
         std::string name = {};  ///< empty: none is shown
         Hue hue = Hue::kText;
         std::optional<std::size_t> body = {};  ///< whose colour it has instead
-        std::vector<CurvePoint> points = {};   ///< in order of time, at least one; all have the same times
+        /// In order of time, at least one; all have the same times. NaN is a gap.
+        std::vector<CurvePoint> points = {};
     };
     /// Title of an axis, the unit of its values (see title_of()), and the minimum extent.
     struct AxisName {

@@ -115,6 +115,29 @@ TEST(FilmPlot, ShowsTheAngleInDegreesAndItsRate) {
     }
 }
 
+TEST(FilmPlot, HasNoAngleNextToThePin) {
+    const Scene scene = plotted_scene("angle");
+    const System system = system_of(scene);
+    State state{0.0, {0.0, 0.0}, {0.0, 0.001}, {0.0, -2.0}, {0.0, 0.0}};
+    const auto state_at = [&](double time_s) -> const State& {  // past the pin, at 2 m/s
+        state.time_s = time_s;
+        state.x_m[1] = 1.0 - 2.0 * time_s;
+        return state;
+    };
+    const auto data =
+        pipeline::LivePlotData(scene, system).read({ExactDef{}}, 1.0, state_at, [](const State&) {
+            return Energy{};
+        });
+    std::size_t gaps = 0;
+    for (const view::CurvePoint& point : data.at(0).curves.at(0).points) {
+        EXPECT_EQ(std::isnan(point.y), std::hypot(1.0 - 2.0 * point.time_s, 0.001) < 0.2) << point.time_s;
+        gaps += std::isnan(point.y) ? 1 : 0;
+    }
+    EXPECT_GT(gaps, 700U);
+    EXPECT_NEAR(data[0].curves[0].points.front().y, 90.0, 0.1);
+    EXPECT_NEAR(data[0].curves[0].points.back().y, 270.0, 0.1);
+}
+
 TEST(FilmPlot, ShowsADistanceThatGrowsFromZero) {
     const Scene scene = parse_scene(R"(schema = 1
 [world]

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "corda/scene/scene.hpp"
 
 namespace corda::pipeline {
@@ -49,6 +51,21 @@ TEST(TrackedParticle, IsLimitedToTheFirstMovingBodies) {
     EXPECT_EQ(followed.front().body, 1U);
     EXPECT_EQ(moving_count(system), 9U);
     EXPECT_EQ(particles_text(system, followed), "the free ends of rope 1 to rope 6 (particle 2 of each)");
+}
+
+TEST(TrackedParticle, TurnsByLessThanHalfATurnPastItsPin) {
+    const System system = system_with("[[rope]]\nhang = { links = 1, length = 1.0 }\n");
+    const TrackedParticle tip = tracked_particles(system).front();
+    // To the left at 5 m/s, 1 mm above the pin: 1 mm past it, the rate is 2500 1/s.
+    for (const double start_m : {0.051, 0.049, 0.0}) {
+        State state{0.0, {0.0, start_m}, {0.0, 0.001}, {0.0, -5.0}, {0.0, 0.0}};
+        const view::CurvePoint before = turning_of(tip, state, nullptr);
+        state.time_s = 0.01;
+        state.x_m[1] -= 0.05;
+        const view::CurvePoint after = turning_of(tip, state, &before);
+        EXPECT_GT(after.x, before.x);
+        EXPECT_LT(after.x, before.x + std::numbers::pi);
+    }
 }
 
 }  // namespace

@@ -111,6 +111,20 @@ TEST(PlotPanel, DistinguishesLabelsFarFromZero) {
     }
 }
 
+TEST(PlotPanel, BreaksCurvesInGaps) {
+    PlotData data = waves();
+    data.curves.pop_back();
+    const auto capsules_at = [&](std::size_t k) { return panel_of(data, 1280, 720, k).capsules; };
+    const std::size_t whole = capsules_at(kSamples).size();
+    for (std::size_t k = 400; k < 600; ++k)
+        data.curves[0].points[k].x = data.curves[0].points[k].y = std::nan("");
+    const auto broken = capsules_at(kSamples);
+    EXPECT_LT(broken.size(), whole);
+    EXPECT_EQ(capsules_at(550).size(), capsules_at(450).size());
+    EXPECT_EQ(capsules_at(399).size(), capsules_at(450).size() + 1);  // the gap has no dot
+    for (const Capsule& capsule : broken) EXPECT_FALSE(std::isnan(capsule.ax) || std::isnan(capsule.length));
+}
+
 TEST(PlotPanel, OmitsAxesThatCannotBeDivided) {
     for (const double size : {1e-305, 1e305}) EXPECT_TRUE(panel_of(waves(size), 1280, 720).texts.empty());
 }
