@@ -47,9 +47,10 @@ double ball_radius(double mass_kg, double rope_kg) {
     return std::min(kMinBall * cube_root(ratio), kMaxBall);
 }
 
-std::vector<std::size_t> traced_by(const StyleDef& style, const System& system) {
+std::vector<std::size_t> traced_by(const StyleDef& style, const System& system,
+                                   const std::vector<std::size_t>& free_ends) {
     if (style.trail_s == 0.0) return {};
-    if (style.trail_of.empty()) return free_ends(system);
+    if (style.trail_of.empty()) return free_ends;
     std::vector<std::size_t> particles;
     std::vector<bool> is_traced(system.particle_count());
     for (const Body& body : system.bodies) {
@@ -96,7 +97,8 @@ SceneView::SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& st
       height_(height),
       side_px_(std::min(width, height)),
       rope_width_px_(style.rope_width_px.value_or(std::max(kMinLineWidthPx, kRopeWidth * side_px_))),
-      traced_(traced_by(style, system)),
+      free_ends_(free_ends(system)),
+      traced_(traced_by(style, system, free_ends_)),
       arrows_(system, gravity_m_s2, style, side_px_) {
     const double net_width_px =
         style.net_width_px.value_or(style.rope_width_px ? kNetWidthPerRopeWidth * rope_width_px_
@@ -169,8 +171,7 @@ BodyLabel SceneView::label_at(std::size_t particle, std::string text) const {
     double clear_px = std::max(bodies_[b].radius_px, bodies_[b].end_radius_px);
     for (const Ball& ball : bodies_[b].balls)
         if (ball.particle == particle) clear_px = ball.radius_px;
-    const std::vector<std::size_t> ends = free_ends(*system_);
-    const bool is_end = std::ranges::binary_search(ends, particle);
+    const bool is_end = std::ranges::binary_search(free_ends_, particle);
     const std::size_t next = particle == system_->bodies[b].first_particle ? particle + 1 : particle - 1;
     return {std::move(text), particle, is_end ? next : particle, clear_px};
 }
@@ -185,15 +186,14 @@ BodyLabel SceneView::label_of(std::size_t b) const {
     };
     const std::size_t pin = first_pin(body);
     const auto shares_pin = [&](const Body& other) {
-        const std::size_t its = first_pin(other);
+        const std::size_t other_pin = first_pin(other);
         const auto b_of_other = static_cast<std::size_t>(&other - system_->bodies.data());
         return &other != &body && !other.label.empty() && bodies_[b_of_other].label_at != LabelAt::kEnd &&
-               its < other.first_particle + other.particle_count && system_->x_m[its] == system_->x_m[pin] &&
-               system_->y_m[its] == system_->y_m[pin];
+               other_pin < other.first_particle + other.particle_count &&
+               system_->x_m[other_pin] == system_->x_m[pin] && system_->y_m[other_pin] == system_->y_m[pin];
     };
-    const std::vector<std::size_t> ends = free_ends(*system_);
-    const auto free = std::lower_bound(ends.begin(), ends.end(), body.first_particle);
-    const bool has_free_end = free != ends.end() && *free < end;
+    const auto free = std::lower_bound(free_ends_.begin(), free_ends_.end(), body.first_particle);
+    const bool has_free_end = free != free_ends_.end() && *free < end;
     const bool is_shared = std::ranges::any_of(system_->bodies, shares_pin);
     const LabelAt place =
         bodies_[b].label_at.value_or(pin == end || is_shared ? LabelAt::kEnd : LabelAt::kPin);

@@ -177,6 +177,7 @@ class SceneView {
     int height_;
     double side_px_;  ///< the shorter one
     double rope_width_px_;
+    std::vector<std::size_t> free_ends_;
     std::vector<std::size_t> traced_;
     std::vector<BodyLook> bodies_;
     std::size_t ball_count_ = 0;
