@@ -172,12 +172,6 @@ void report_plan(const Console& console, Film& film);
 /// Warns if a method that the scene names took one of several ways. To be called when the motion is known.
 void warn_of_branch(const Console& console, const Film& film);
 
-/// A value, or null if there is none.
-template <class Value>
-[[nodiscard]] nlohmann::json or_null(const std::optional<Value>& value) {
-    return value ? nlohmann::json(*value) : nlohmann::json();
-}
-
 /// The keys that every JSON result about a film has: method, sizes, error bound, camera, passes; null for
 /// unknown values. Simulates the film if necessary.
 [[nodiscard]] nlohmann::json film_json(Film& film);

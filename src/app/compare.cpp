@@ -20,6 +20,7 @@
 #include "corda/golden/perceived.hpp"
 #include "corda/golden/suite.hpp"
 #include "corda/media/defs.hpp"
+#include "corda/pipeline/plan_text.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "corda/core/text.hpp"
 #include "corda/pipeline/provenance.hpp"
@@ -281,6 +282,14 @@ PngInfo picture_info(const std::string& scene_name, const std::string& times, co
     if (!frames.empty()) info.text.emplace_back("Frame", frames);
     info.text.emplace_back(kProvenanceKeyword, provenance);
     return info;
+}
+
+nlohmann::json or_null(const std::optional<double>& value) {
+    return value ? nlohmann::json(*value) : nlohmann::json();
+}
+
+nlohmann::json or_null(const std::optional<std::string>& value) {
+    return value ? nlohmann::json(*value) : nlohmann::json();
 }
 
 std::vector<std::string> modelled_terms(const Scene& scene, const Plan& plan) {

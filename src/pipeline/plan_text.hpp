@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -64,6 +65,10 @@ struct MethodGroup {
 /// (provenance_text).
 [[nodiscard]] PngInfo picture_info(const std::string& scene_name, const std::string& times,
                                    const std::string& frames, const std::string& provenance);
+
+/// A value in JSON, or null if there is none.
+[[nodiscard]] nlohmann::json or_null(const std::optional<double>& value);
+[[nodiscard]] nlohmann::json or_null(const std::optional<std::string>& value);
 
 namespace pipeline {
 

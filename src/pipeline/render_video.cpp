@@ -76,10 +76,6 @@ void check_chunks(const std::string& path, const std::map<std::string, std::stri
     media::check_chunks_in_child(parts, *manifest);
 }
 
-nlohmann::json json_or_null(const std::optional<double>& value) {
-    return value ? nlohmann::json(*value) : nlohmann::json();
-}
-
 /// Title, comment and provenance of the file.
 media::VideoMetadata metadata(const pipeline::Panels& panels, std::int64_t first, std::int64_t end,
                               const std::map<std::string, std::string>& origin) {
@@ -90,9 +86,9 @@ media::VideoMetadata metadata(const pipeline::Panels& panels, std::int64_t first
     if (is_one) {
         Film& film = panels.films.front();
         comment["method"] = method_names(film.plan());
-        comment["error_bound_m"] = json_or_null(film.plan().error_bound_m);
-        comment["error_bound_px"] = json_or_null(film.error_bound_px());
-        comment["horizon_s"] = json_or_null(film.plan().horizon_s);
+        comment["error_bound_m"] = or_null(film.plan().error_bound_m);
+        comment["error_bound_px"] = or_null(film.error_bound_px());
+        comment["horizon_s"] = or_null(film.plan().horizon_s);
     }
     // Without the range of frames, so that a picture has the bytes of the still.
     const std::string of_picture = provenance_text(made);

@@ -12,10 +12,6 @@
 namespace corda::sweep {
 namespace {
 
-Json number_or_null(const std::optional<double>& value) {
-    return value ? Json(*value) : Json();
-}
-
 /// All that the .json of a sample says.
 Json info_of(Film& film, const SweepDef& sweep, const Sample& sample) {
     const VideoDef& video = film.scene().video;
@@ -25,7 +21,7 @@ Json info_of(Film& film, const SweepDef& sweep, const Sample& sample) {
     Json summary = Json::object();
     for (const SummaryColumn& column : summary_columns())
         if (std::ranges::find(sweep.summary, column.name) != sweep.summary.end())
-            summary[std::string(column.name)] = number_or_null(sample.summary.*column.value);
+            summary[std::string(column.name)] = or_null(sample.summary.*column.value);
     return {{"schema", 1},
             {"corda", version()},
             {"sample", sample.number},
@@ -40,9 +36,9 @@ Json info_of(Film& film, const SweepDef& sweep, const Sample& sample) {
             {"camera", {{"center", {camera.center_m->x, camera.center_m->y}}, {"height", *camera.height_m}}},
             {"px_per_m", video.height_px / *camera.height_m},
             {"method", method_names(film.plan())},
-            {"error_bound_m", number_or_null(sample.summary.error_bound_m)},
-            {"error_bound_px", number_or_null(sample.summary.error_bound_px)},
-            {"horizon_s", number_or_null(sample.summary.horizon_s)},
+            {"error_bound_m", or_null(sample.summary.error_bound_m)},
+            {"error_bound_px", or_null(sample.summary.error_bound_px)},
+            {"horizon_s", or_null(sample.summary.horizon_s)},
             {"summary", summary}};
 }
 
