@@ -11,7 +11,6 @@
 
 #include "corda/core/text.hpp"
 #include "corda/figures/chart.hpp"
-#include "corda/figures/period_theory.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/sim/solver.hpp"
 #include "corda/view/colors.hpp"

@@ -14,8 +14,7 @@
 #include "corda/core/text.hpp"
 #include "corda/figures/drawings.hpp"
 #include "corda/figures/motion_summary.hpp"
-#include "corda/figures/period_theory.hpp"
-#include "corda/media/png/png.hpp"
+#include "corda/media/bytes.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/report/writers.hpp"
@@ -42,10 +41,10 @@ struct SweepColumn {
             {{"_m_s", "m/s"}, {"_s", "s"}, {"_deg", "°"}, {"_n", "N"}, {"_px", "px"}, {"_m", "m"}}};
         std::string text = short_name(name);
         std::string_view unit;
-        for (const auto& [ending, its_unit] : kUnits) {
+        for (const auto& [ending, known_unit] : kUnits) {
             if (!text.ends_with(ending)) continue;
             text.resize(text.size() - ending.size());
-            unit = its_unit;
+            unit = known_unit;
             break;
         }
         if (const scene::Key* const key = is_summary || !unit.empty() ? nullptr : schema_key())
@@ -197,9 +196,9 @@ report::Plot plot_of(const sweep::SweepDef& sweep, const SweepPoints& all, const
     plot.y_title = y.title();
     plot.log_x = plot.log_y = false;
     for (const sweep::VariedKey& varied : sweep.vary)
-        if (const auto* const its = std::get_if<sweep::Distribution>(&varied.values);
-            its && varied.key == x.name)
-            plot.log_x = its->shape == sweep::Shape::kLogUniform;
+        if (const auto* const distribution = std::get_if<sweep::Distribution>(&varied.values);
+            distribution && varied.key == x.name)
+            plot.log_x = distribution->shape == sweep::Shape::kLogUniform;
     for (std::size_t i = 0; i < all.series.size(); ++i) {
         const auto& [name, parameters] = all.series[i];
         report::Series measured{.name = name.empty() ? "measured" : name, .points = {}};
@@ -218,8 +217,8 @@ report::Plot plot_of(const sweep::SweepDef& sweep, const SweepPoints& all, const
             theory.points.clear();
             for (int k = 0; k <= kCurvePoints; ++k) {
                 const double angle_deg = first_deg + k * extent_deg / kCurvePoints;
-                if (const auto its = period_theory(scene, angle_deg))
-                    theory.points.emplace_back(angle_deg, its->period_s);
+                if (const auto period = period_theory(scene, angle_deg))
+                    theory.points.emplace_back(angle_deg, period->period_s);
             }
         }
         measured.form = report::Series::Form::kPoints;

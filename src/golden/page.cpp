@@ -7,7 +7,7 @@
 #include "corda/core/markup.hpp"
 #include "corda/core/text.hpp"
 #include "corda/golden/suite.hpp"
-#include "corda/media/png/png.hpp"
+#include "corda/media/bytes.hpp"
 
 namespace corda::golden {
 namespace {

@@ -16,7 +16,7 @@
 #include "corda/golden/cases.hpp"
 #include "corda/golden/perceived.hpp"
 #include "corda/golden/record.hpp"
-#include "corda/media/png/png.hpp"
+#include "corda/media/bytes.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "corda/scene/write_scene.hpp"
 #include "corda/view/font.hpp"

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "corda/core/file.hpp"
+#include "corda/media/defs.hpp"
 
 struct AVSHA;
 
@@ -109,5 +110,9 @@ template <typename T>
     constexpr std::int64_t kLargest = std::int64_t{1} << 60;
     return ticks >= -kLargest && ticks <= kLargest;
 }
+
+/// The bytes of the file that write_png() writes; with `keeps_alpha`, an opaque picture has alpha, too.
+/// Throws corda::Error (kIo, kInterrupted) as that does.
+[[nodiscard]] std::string png_bytes(const Image& image, const PngInfo& info, bool keeps_alpha = false);
 
 }  // namespace corda::media

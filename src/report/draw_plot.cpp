@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "corda/core/text.hpp"
-#include "corda/media/png/png.hpp"
+#include "corda/media/bytes.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/render/vector.hpp"
 #include "corda/report/writers.hpp"

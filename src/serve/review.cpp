@@ -9,7 +9,7 @@
 
 #include "corda/core/file.hpp"
 #include "corda/golden/cases.hpp"
-#include "corda/media/png/png.hpp"
+#include "corda/media/bytes.hpp"
 #include "embedded_page.hpp"
 
 namespace corda::serve {

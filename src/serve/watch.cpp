@@ -15,7 +15,7 @@
 #include "corda/core/cancel.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/media/png/png.hpp"
+#include "corda/media/bytes.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/pipeline/tracked_particle.hpp"
 #include "corda/scene/document.hpp"

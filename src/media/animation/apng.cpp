@@ -6,7 +6,6 @@
 #include "corda/media/bytes.hpp"
 #include "corda/media/format/file_kind.hpp"
 #include "corda/media/libav_handles.hpp"
-#include "corda/media/png/png.hpp"
 
 // Portable Network Graphics (PNG) Specification, third edition: 5.3 and 11.3.6, the chunks of animations.
 

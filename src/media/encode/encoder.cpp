@@ -9,9 +9,9 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/text.hpp"
+#include "corda/media/bytes.hpp"
 #include "corda/media/chunks/chunk.hpp"
 #include "corda/media/encode/pixels.hpp"
-#include "corda/media/png/png.hpp"
 
 namespace corda::media {
 namespace {

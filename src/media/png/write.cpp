@@ -12,8 +12,8 @@
 #include "corda/core/cancel.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
+#include "corda/media/bytes.hpp"
 #include "corda/media/defs.hpp"
-#include "corda/media/png/png.hpp"
 
 namespace corda {
 namespace {

@@ -1,4 +1,4 @@
-#include "corda/sim/exact/bar_groups.hpp"
+#include "corda/sim/exact/net_dynamics.hpp"
 
 #include <algorithm>
 #include <cmath>

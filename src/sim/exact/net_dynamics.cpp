@@ -9,7 +9,6 @@
 #include "corda/core/cancel.hpp"
 #include "corda/core/cpu.hpp"
 #include "corda/sim/defs.hpp"
-#include "corda/sim/exact/bar_groups.hpp"
 #include "corda/sim/rattle/constraint_solver.hpp"
 
 namespace corda::sim {

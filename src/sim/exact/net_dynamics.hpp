@@ -11,8 +11,19 @@
 
 namespace corda::sim {
 
-struct BarGroups;
 class ConstraintSolver;
+
+/// The rigid bars of a body that turn together: opposite sides of parallelograms, which stay parallel, and
+/// sides of triangles. A parallelogram whose sides come into line could turn into another quadrilateral from
+/// there; its motion stays smooth only if it remains one.
+struct BarGroups {
+    /// Inverse masses of 0 hold particles.
+    BarGroups(const System& system, const std::vector<double>& inverse_mass_1_kg);
+
+    std::size_t count = 0;
+    std::vector<std::uint32_t> of_bar;  ///< group of each bar; `count` if it never turns
+    std::vector<bool> is_held;          ///< particles that never move
+};
 
 /// The motion of one body of rigid bars in which bars turn together: opposite sides of parallelograms, and
 /// the sides of triangles (section 3.5 of src/sim/README.md). A grid of r x c particles without diagonals has

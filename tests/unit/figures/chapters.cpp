@@ -5,7 +5,6 @@
 
 #include <numbers>
 
-#include "corda/figures/period_theory.hpp"
 #include "support.hpp"
 
 namespace corda::figures {

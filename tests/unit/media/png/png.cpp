@@ -9,8 +9,8 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/child_process.hpp"
+#include "corda/media/bytes.hpp"
 #include "corda/media/defs.hpp"
-#include "corda/media/png/png.hpp"
 #include "support/cancel.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"

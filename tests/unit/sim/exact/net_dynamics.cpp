@@ -10,7 +10,6 @@
 #include <cstdint>
 
 #include "corda/core/cancel.hpp"
-#include "corda/sim/exact/bar_groups.hpp"
 #include "corda/sim/rattle/constraint_solver.hpp"
 #include "support/cancel.hpp"
 #include "support/failure.hpp"
