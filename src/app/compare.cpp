@@ -54,18 +54,18 @@ ComparedPicture compare_picture(const CompareOptions& options, const std::string
                                 const std::string& diff, int threads) {
     const Picture a = read_picture(path_a);
     const Picture b = read_picture(path_b);
-    const Image* const its_mask = mask ? &*mask : nullptr;
+    const Image* const mask_image = mask ? &*mask : nullptr;
     PerceivedFigures figures = figures_for(options);
     figures.threads = threads;
     // Small pictures have no SSIM; only an explicit request is refused.
     const bool is_small = std::min(a.image.width(), a.image.height()) < kMinSsimSidePx;
     if (is_small && !options.limits.ssim) figures.ssim = false;
     ComparedPicture compared;
-    compared.difference = compare(a, b, its_mask);
-    add_perceived(a.image, b.image, figures, compared.difference, its_mask);
+    compared.difference = compare(a, b, mask_image);
+    add_perceived(a.image, b.image, figures, compared.difference, mask_image);
     compared.passed = compared.difference.within(options.limits);
     compared.words = words_of(compared, a.image, b.image);
-    if (!diff.empty()) write_png(diff, difference_image(a, b, its_mask), {}, {.force = options.force});
+    if (!diff.empty()) write_png(diff, difference_image(a, b, mask_image), {}, {.force = options.force});
     return compared;
 }
 

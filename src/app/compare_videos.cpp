@@ -59,9 +59,9 @@ void take_frames(const CompareOptions& options, const std::array<media::StoredPi
     std::array<Image, 2> images{pictures[0].rgba(), pictures[1].rgba()};
     const PerceivedFigures figures{.flip = options.limits.flip.has_value(),
                                    .ssim = options.limits.ssim.has_value()};
-    const Image* const its_mask = mask ? &*mask : nullptr;
-    Difference difference = compare(images[0], images[1], its_mask);
-    add_perceived(images[0], images[1], figures, difference, its_mask);
+    const Image* const mask_image = mask ? &*mask : nullptr;
+    Difference difference = compare(images[0], images[1], mask_image);
+    add_perceived(images[0], images[1], figures, difference, mask_image);
     // In one format, different samples can give the same colours; with a mask, only colours are compared.
     if (is_stored_alike && !mask) difference.equal = false;
     if (difference.equal) return;

@@ -168,11 +168,11 @@ PngInfo FigureOptions::png_info(const Scene& loaded, const std::vector<Requested
         width_mm ? loaded.video.width_px * kMmPerInch / *width_mm : pixels_per_inch.value_or(kScreenPpi);
     for (const RequestedTime& time : some)
         origin.times.push_back({time.frame, time.frame ? 0.0 : time.time_s});
-    const bool are_its_own = std::ranges::all_of(all_s, [&](double time_s) {
+    const bool are_origins = std::ranges::all_of(all_s, [&](double time_s) {
         return std::ranges::any_of(
-            origin.times, [&](const PictureTime& its) { return !its.frame && its.time_s == time_s; });
+            origin.times, [&](const PictureTime& time) { return !time.frame && time.time_s == time_s; });
     });
-    if (!are_its_own) origin.film_times_s = all_s;
+    if (!are_origins) origin.film_times_s = all_s;
     if (ppi != kScreenPpi) origin.pixels_per_inch = ppi;
     if (!made_) made_ = provenance_of(loaded);
     Provenance made = *made_;

@@ -66,8 +66,8 @@ std::string range_of(const Console& console, const RenderOptions& options) {
         return setting.starts_with("world.duration") || setting.starts_with("video.fps") ||
                setting.starts_with("video.speed");
     });
-    const bool takes_its = options.scene.is_from() && options.frames.empty() && has_its_frames;
-    return takes_its ? options.scene.provenance(console).frames : options.frames;
+    const bool takes_recorded = options.scene.is_from() && options.frames.empty() && has_its_frames;
+    return takes_recorded ? options.scene.provenance(console).frames : options.frames;
 }
 
 /// Whether the video is one file, which is made of chunks.

@@ -99,9 +99,9 @@ std::string nothing_text(const SuiteDef& def, std::vector<std::string> left_out)
         return fmt::format(
             "nothing to accept: '{}' has no picture, as after a corda golden --new without failures",
             folders);
-    constexpr std::size_t kMaxTold = 10;
-    const bool has_more = left_out.size() > kMaxTold;
-    if (has_more) left_out.resize(kMaxTold);
+    constexpr std::size_t kMaxNamed = 10;
+    const bool has_more = left_out.size() > kMaxNamed;
+    if (has_more) left_out.resize(kMaxNamed);
     return fmt::format(
         "nothing to accept: '{}' has other pictures than those of --only or --shard; leave that out, or name "
         "some of {}{}",
@@ -158,7 +158,7 @@ SuiteResult accept(const SuiteDef& def) {
     std::vector<std::string> passed_over;
     std::vector<Case> cases = load_cases(strict, invalid, passed_over);
     select(def, cases, stale, invalid);
-    tell_passed_over(passed_over, stale, result);
+    report_skipped_files(passed_over, stale, result);
     std::map<std::string, std::pair<const Case*, const Checked*>> known;
     for (const Case& one : cases)
         for (const Checked& picture : one.pictures) known[picture.name] = {&one, &picture};

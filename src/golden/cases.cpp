@@ -238,8 +238,8 @@ std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid,
     return cases;
 }
 
-void tell_passed_over(const std::vector<std::string>& files, const std::vector<std::string>& stale,
-                      SuiteResult& result) {
+void report_skipped_files(const std::vector<std::string>& files, const std::vector<std::string>& stale,
+                          SuiteResult& result) {
     for (const std::string& file : files) {
         const bool has_stale = std::ranges::any_of(stale, [&](const std::string& path) {
             return scene_in_name(fs::path(path).filename().string()) == fs::path(file).stem();

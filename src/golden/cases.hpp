@@ -31,8 +31,8 @@ struct Case {
                                            std::vector<std::string>& passed_over);
 
 /// Reports the files that were passed over: as a note if pictures are stale for it, else as a detail.
-void tell_passed_over(const std::vector<std::string>& files, const std::vector<std::string>& stale,
-                      SuiteResult& result);
+void report_skipped_files(const std::vector<std::string>& files, const std::vector<std::string>& stale,
+                          SuiteResult& result);
 
 /// Leaves the pictures out that the suite does not ask for: those of `cases` stay, unselected. Throws
 /// corda::Error (kUsage) for a name of SuiteDef::only that is none.

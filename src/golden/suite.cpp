@@ -79,7 +79,7 @@ void judge(const Drawn& drawn, const std::vector<std::string>& variants, Checked
                                   .flip = golden.flip,
                                   .ssim = golden.ssim};
     picture.verdict = variants.empty() ? Verdict::kMissing : Verdict::kDifferent;
-    std::optional<Checked> told;
+    std::optional<Checked> failed;
     for (const std::string& path : variants) {
         Checked result = picture;
         if (passes(drawn, limits, path, result)) {
@@ -88,9 +88,9 @@ void judge(const Drawn& drawn, const std::vector<std::string>& variants, Checked
             picture.cause = picture.group = "";
             return;
         }
-        if (!told || fs::path(path).filename() == picture.name) told = result;
+        if (!failed || fs::path(path).filename() == picture.name) failed = result;
     }
-    if (told) picture = *told;
+    if (failed) picture = *failed;
     if (picture.verdict == Verdict::kMissing) picture.group = "there is no reference";
 }
 
@@ -132,7 +132,7 @@ class Runner {
             make_film(*job, {});
         }
         if (def_.update || !def_.new_folder.empty()) freeze(*job);
-        if (def_.update) tell_frozen(one, freezing(one.scene, job->made.front()), "its pictures freeze");
+        if (def_.update) note_frozen(one, freezing(one.scene, job->made.front()), "its pictures freeze");
         const std::size_t count = one.pictures.size();
         const bool may_split = job->film->scene().video.shutter == 0.0;
         const std::size_t pieces =
@@ -224,13 +224,13 @@ class Runner {
             job.left -= end - first;
             if (job.left > 0) return;
         }
-        tell_since_when(job);
-        tell_changes(job);
+        note_since_when(job);
+        note_changes(job);
         job.film.reset();
     }
 
     /// Adds to the causes what the scene says that the kept pictures' did not.
-    void tell_changes(Job& job) const {
+    void note_changes(Job& job) const {
         const bool is_cut = !job.frozen.empty() && leaves_frame(job);
         for (Checked& picture : job.scene->pictures) {
             const auto add = [&cause = picture.cause](const std::string& text) {
@@ -257,7 +257,7 @@ class Runner {
                 try {
                     auto frozen = freezing(one.scene, provenance_in(read_png_info(path)).golden);
                     if (frozen.empty()) continue;
-                    tell_frozen(one, frozen, "frozen by " + picture.name);
+                    note_frozen(one, frozen, "frozen by " + picture.name);
                     return frozen;
                 } catch (const Error& error) {
                     if (error.code() != ExitCode::kIo) throw;  // otherwise the comparison tells
@@ -267,7 +267,7 @@ class Runner {
         return {};
     }
 
-    static void tell_frozen(Case& one, const std::vector<Setting>& frozen, const std::string& how) {
+    static void note_frozen(Case& one, const std::vector<Setting>& frozen, const std::string& how) {
         if (frozen.empty()) return;
         one.frozen = fmt::format("{}: {}:", one.scene.name, how);
         for (const Setting& setting : frozen) one.frozen += " " + setting;
@@ -294,7 +294,7 @@ class Runner {
     }
 
     /// Adds to the causes from when on positions differ, be it not enough to fail a picture.
-    void tell_since_when(const Job& job) const {
+    void note_since_when(const Job& job) const {
         std::vector<Checked>& pictures = job.scene->pictures;
         const auto moved = [](const Checked& picture) { return picture.cause.starts_with("positions"); };
         if (std::ranges::none_of(pictures, moved)) return;
@@ -331,7 +331,7 @@ class Runner {
 };
 
 /// Notes the kept pictures that freeze nothing because their texts are gone.
-void tell_lost_records(const SuiteDef& def, const std::vector<Case>& cases, SuiteResult& result) {
+void note_lost_records(const SuiteDef& def, const std::vector<Case>& cases, SuiteResult& result) {
     std::vector<std::string> names;
     for (const Case& one : cases)
         for (const Checked& picture : one.pictures)
@@ -373,7 +373,7 @@ SuiteResult run(const SuiteDef& def) {
     std::vector<std::string> stale =
         invalid.empty() ? stale_ones(def, cases, references) : std::vector<std::string>{};
     select(def, cases, stale, invalid);
-    tell_passed_over(passed_over, stale, result);
+    report_skipped_files(passed_over, stale, result);
     require_files(def, cases);
     std::erase_if(cases,
                   [](const Case& one) { return std::ranges::none_of(one.pictures, &Checked::selected); });
@@ -386,7 +386,7 @@ SuiteResult run(const SuiteDef& def) {
     Runner runner(def, references, all);
     runner.check(cases);
     if (!def.new_folder.empty()) write_new(def, cases, runner.files());
-    if (!def.update) tell_lost_records(def, cases, result);
+    if (!def.update) note_lost_records(def, cases, result);
     for (Case& one : cases) {
         std::copy_if(std::make_move_iterator(one.pictures.begin()),
                      std::make_move_iterator(one.pictures.end()), std::back_inserter(result.pictures),

@@ -173,9 +173,9 @@ SharedMotion::Activity::~Activity() {
 
 SharedMotion::Use::Use(SharedMotion& motion, const OnProgress& on_progress)
     : activity_(motion), lock_(motion.mutex_), progress_([&] {
-          const Motion& its = *motion.motion;
-          report_progress(on_progress, static_cast<std::int64_t>(its.next()),
-                          static_cast<std::int64_t>(its.timeline().size()));
+          const Motion& whole = *motion.motion;
+          report_progress(on_progress, static_cast<std::int64_t>(whole.next()),
+                          static_cast<std::int64_t>(whole.timeline().size()));
       }) {}
 
 TrailRecorder::TrailRecorder(std::vector<std::size_t> particles, double trail_s, FrameRate fps)

@@ -49,16 +49,17 @@ VideoDef panels_video(std::span<const Scene> scenes, int columns) {
     for (int i = 0; i < rows; ++i)
         whole.height_px += scenes[static_cast<std::size_t>(i) * row].video.height_px;
     for (std::size_t i = 0; i < scenes.size(); ++i) {
-        const VideoDef& its = scenes[i].video;
-        if (its.width_px != scenes[i % row].video.width_px ||
-            its.height_px != scenes[i - i % row].video.height_px)
+        const VideoDef& video = scenes[i].video;
+        if (video.width_px != scenes[i % row].video.width_px ||
+            video.height_px != scenes[i - i % row].video.height_px)
             throw_usage("panel {} of {}x{} pixels fits no grid with the others; lay all out in one size", i,
-                        its.width_px, its.height_px);
-        if (its.fps.rational() != whole.fps.rational())
+                        video.width_px, video.height_px);
+        if (video.fps.rational() != whole.fps.rational())
             throw_usage(
                 "'{}' has {} frames per second and '{}' has {}; panels have one clock: give all scenes the "
                 "same video.fps (--fps)",
-                scenes[i].name, its.fps.rational().text(), scenes.front().name, whole.fps.rational().text());
+                scenes[i].name, video.fps.rational().text(), scenes.front().name,
+                whole.fps.rational().text());
     }
     return whole;
 }

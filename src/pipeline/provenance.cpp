@@ -164,8 +164,8 @@ Provenance parsed(const Json& json) {
 }
 
 /// Calls `visit` with the scene of a file and those of its parts.
-template <class Its, class Visit>
-void for_each_scene(Its& provenance, const Visit& visit) {
+template <class Made, class Visit>
+void for_each_scene(Made& provenance, const Visit& visit) {
     visit(provenance.scene);
     for (auto& part : provenance.parts) for_each_scene(part, visit);
 }

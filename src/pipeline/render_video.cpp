@@ -42,15 +42,15 @@ std::map<std::string, std::string> origin_of(std::span<const Scene> panels, int 
     std::map<std::string, std::string> origin = digest(panels.front());
     std::size_t room = std::size_t{16} << 10;  // chunks tell at most 64 KiB
     for (std::size_t i = 1; i < panels.size(); ++i) {
-        std::map<std::string, std::string> its;
+        std::map<std::string, std::string> of_panel;
         std::string text;
         for (const auto& [key, value] : digest(panels[i])) {
-            its[fmt::format("panel {}: {}", i, key)] = value;
+            of_panel[fmt::format("panel {}: {}", i, key)] = value;
             text += fmt::format("panel {}: {} = {}\n", i, key, value);
         }
         const bool has_room = text.size() <= room;
         if (has_room)
-            origin.merge(its);
+            origin.merge(of_panel);
         else
             origin[fmt::format("panel {}", i)] = hashed(text);
         room -= has_room ? text.size() : 0;

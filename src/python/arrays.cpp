@@ -8,22 +8,22 @@ namespace corda::python {
 
 py::array_t<double> label(PyFilm& film, const char* name, bool needs_fields) {
     const sweep::Label* const label = sweep::find_label(name);
-    const auto read = [&](Film& its) {
-        return sweep::read_labels(its, std::span(&label, 1), its.frame_count());
+    const auto read = [&](Film& shown) {
+        return sweep::read_labels(shown, std::span(&label, 1), shown.frame_count());
     };
     auto arrays = needs_fields ? film.with_fields(read) : film.with_film(read);
     return to_numpy<double>(std::move(arrays.front()));
 }
 
 py::array_t<double> times(const PyFilm& film) {
-    const Film& its = film.constant();
+    const Film& shown = film.constant();
     std::vector<double> all;
-    for (std::int64_t k = 0; k < its.frame_count(); ++k) all.push_back(its.time_s(k));
+    for (std::int64_t k = 0; k < shown.frame_count(); ++k) all.push_back(shown.time_s(k));
     return py::array_t<double>(static_cast<py::ssize_t>(all.size()), all.data());
 }
 
 py::array_t<std::uint8_t> mask(PyFilm& film, std::int64_t k) {
-    const std::vector<std::uint8_t> pixels = film.with_film([k](Film& its) { return its.mask(k); });
+    const std::vector<std::uint8_t> pixels = film.with_film([k](Film& shown) { return shown.mask(k); });
     const VideoDef& video = film.constant().scene().video;
     return py::array_t<std::uint8_t>({video.height_px, video.width_px}, pixels.data());
 }
@@ -41,11 +41,11 @@ py::array_t<double> to_pixels(PyFilm& film, const Points& points_m) {
         throw py::value_error(
             "the camera moves: points are an array of shape (frames, ..., 2) of all frames");
     const std::size_t per_frame = moves ? points.size() / static_cast<std::size_t>(frames) : points.size();
-    const std::vector<Vec2> pixels = film.with_film([&](Film& its) {
+    const std::vector<Vec2> pixels = film.with_film([&](Film& shown) {
         std::vector<Vec2> all;
         for (std::int64_t k = 0; all.size() < points.size(); ++k) {
             const auto some = std::span(points).subspan(all.size(), per_frame);
-            const std::vector<Vec2> mapped = its.to_pixels(some, its.time_s(k));
+            const std::vector<Vec2> mapped = shown.to_pixels(some, shown.time_s(k));
             all.insert(all.end(), mapped.begin(), mapped.end());
         }
         return all;

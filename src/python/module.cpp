@@ -59,9 +59,9 @@ corda::Image to_image(const py::object& picture) {
 }
 
 py::dict plan(PyFilm& film) {
-    return film.with_film([](corda::Film& its) {
-        const corda::Plan& chosen = its.plan();
-        const auto bound_px = its.error_bound_px();
+    return film.with_film([](corda::Film& shown) {
+        const corda::Plan& chosen = shown.plan();
+        const auto bound_px = shown.error_bound_px();
         const py::gil_scoped_acquire hold;
         py::list methods;
         for (const corda::BodyPlan& body : chosen.bodies)
@@ -77,8 +77,8 @@ py::dict plan(PyFilm& film) {
 }
 
 py::dict camera(PyFilm& film) {
-    return film.with_film([](corda::Film& its) {
-        const corda::CameraDef& def = its.camera();
+    return film.with_film([](corda::Film& shown) {
+        const corda::CameraDef& def = shown.camera();
         const py::gil_scoped_acquire hold;
         py::dict all;
         all["center"] = py::make_tuple(def.center_m->x, def.center_m->y);
@@ -93,7 +93,7 @@ std::int64_t save(PyFilm& film, const std::string& path, bool force, bool resume
     corda::RenderDef def{.force = force, .resume = resume};
     def.on_progress = [&](std::int64_t done, std::int64_t total) { return asking(done, total); };
     const corda::Rendered rendered =
-        film.with_film([&](corda::Film& its) { return corda::render_video(its, path, def); }, asking);
+        film.with_film([&](corda::Film& shown) { return corda::render_video(shown, path, def); }, asking);
     if (!rendered.complete) {
         throw corda::Error(corda::ExitCode::kInterrupted,
                            rendered.kept.empty()
@@ -167,11 +167,11 @@ void add_film(py::module_& module) {
              })
         .def("frame",
              [](PyFilm& film, std::int64_t k) {
-                 return to_array(film.with_film([k](Film& its) { return its.frame(k); }));
+                 return to_array(film.with_film([k](Film& shown) { return shown.frame(k); }));
              })
         .def("still",
              [](PyFilm& film, double time_s, double shutter) {
-                 return to_array(film.with_film([=](Film& its) { return its.still(time_s, shutter); }));
+                 return to_array(film.with_film([=](Film& shown) { return shown.still(time_s, shutter); }));
              })
         .def("for_browser", &for_browser)
         .def("positions", [](PyFilm& film) { return corda::python::label(film, "positions", false); })

@@ -403,7 +403,7 @@ namespace corda {
 
 std::string cost_notice(const Scene& scene) {
     using namespace scene;
-    constexpr double kMinToldSeconds = 5.0;
+    constexpr double kMinNoticeSeconds = 5.0;
     constexpr double kBarUpdatesPerSecond = 1.2e8;
     const System system = system_of(scene);
     const std::vector<SolverDef> solvers = solvers_of(scene);
@@ -434,14 +434,14 @@ std::string cost_notice(const Scene& scene) {
             if (pace_s <= body_s) continue;
             body_s = pace_s;
             why = fmt::format("{} so fast that it takes up to {:.2g} steps", pace.what, work.steps);
-            remedy = advice_for(pace, kMinToldSeconds / pace_s);
+            remedy = advice_for(pace, kMinNoticeSeconds / pace_s);
         }
         all_s += body_s;
         if (body_s <= slowest_s) continue;
         slowest_s = body_s;
         reason = fmt::format("{} {}; give {} or a shorter duration", body_name(system, i), why, remedy);
     }
-    if (all_s < kMinToldSeconds) return {};
+    if (all_s < kMinNoticeSeconds) return {};
     return fmt::format("computing {:g} s of motion may take {}: {}", scene.world.duration_s,
                        duration_text(all_s), reason);
 }

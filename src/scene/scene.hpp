@@ -157,11 +157,11 @@ struct PlacedSettings {
 /// The particles and bars of a scene at t = 0: its ropes, then its nets.
 [[nodiscard]] System system_of(const Scene& scene);
 
-/// Checks definitions filled in by code against the types, ranges and words of the keys of a scene file.
 /// The system with the labels that files of numbers use: merged bodies without labels, such as copies, count
 /// on from the labelled one before them, as in "8 kg 2".
 [[nodiscard]] System named_in_files(const Scene& scene, System system);
 
+/// Checks definitions filled in by code against the types, ranges and words of the keys of a scene file.
 /// build_system() checks ropes and nets. Throws corda::Error (kInvalidScene), which names each bad key.
 void check_definitions(const Scene& scene);
 

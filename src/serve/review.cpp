@@ -67,14 +67,16 @@ Response Review::picture(std::string_view path) const {
     std::size_t index = 0;
     const auto [end, status] = std::from_chars(path.data(), path.data() + path.size(), index);
     if (status != std::errc{} || index >= pictures_.size()) return none();
-    const Checked& its = pictures_[index];
+    const Checked& shown = pictures_[index];
     const std::string_view kind(end, path.data() + path.size());
-    if (kind == "/reference.png" && !its.reference.empty())
-        return {200, "image/png", file_bytes(its.reference)};
-    if (kind == "/new.png" && !its.drawn_path.empty()) return {200, "image/png", file_bytes(its.drawn_path)};
-    if (kind == "/difference.png" && !its.reference.empty() && !its.drawn_path.empty())
-        return {200, "image/png",
-                media::png_bytes(golden::amplified(read_png(its.reference), read_png(its.drawn_path)), {})};
+    if (kind == "/reference.png" && !shown.reference.empty())
+        return {200, "image/png", file_bytes(shown.reference)};
+    if (kind == "/new.png" && !shown.drawn_path.empty())
+        return {200, "image/png", file_bytes(shown.drawn_path)};
+    if (kind == "/difference.png" && !shown.reference.empty() && !shown.drawn_path.empty())
+        return {
+            200, "image/png",
+            media::png_bytes(golden::amplified(read_png(shown.reference), read_png(shown.drawn_path)), {})};
     return none();
 }
 

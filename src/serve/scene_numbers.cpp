@@ -26,7 +26,7 @@ class Collector {
   public:
     std::vector<Found> collect(const toml::table& document) {
         add_table(document, "", "");
-        std::ranges::sort(found_, {}, [](const Found& its) { return its.region.begin; });
+        std::ranges::sort(found_, {}, [](const Found& found) { return found.region.begin; });
         return std::move(found_);
     }
 
@@ -34,24 +34,24 @@ class Collector {
     /// `path` has the indices of tables, `section` has not.
     void add_table(const toml::table& table, const std::string& path, const std::string& section) {
         for (const auto& [key, node] : table) {
-            const std::string its_path = scene::dotted(path, key.str());
-            const std::string its_section = scene::dotted(section, key.str());
+            const std::string key_path = scene::dotted(path, key.str());
+            const std::string key_section = scene::dotted(section, key.str());
             if (section.empty() && (key.str() == "video" || key.str() == "golden" || key.str() == "schema"))
                 continue;
             if (const auto* const inner = node.as_table()) {
-                add_table(*inner, its_path, its_section);
+                add_table(*inner, key_path, key_section);
             } else if (const auto* const list = node.as_array(); list != nullptr) {
                 const bool has_tables = list->is_array_of_tables();
                 for (std::size_t i = 0; i < list->size() && (has_tables || list->size() <= kMaxEntries);
                      ++i) {
-                    const std::string entry = fmt::format("{}[{}]", its_path, i);
+                    const std::string entry = fmt::format("{}[{}]", key_path, i);
                     if (has_tables)
-                        add_table(*list->get_as<toml::table>(i), entry, its_section);
+                        add_table(*list->get_as<toml::table>(i), entry, key_section);
                     else
                         add_number(*list->get(i), entry, scene::find_key(section, key.str()));
                 }
             } else {
-                add_number(node, its_path, scene::find_key(section, key.str()));
+                add_number(node, key_path, scene::find_key(section, key.str()));
             }
         }
     }
@@ -112,7 +112,7 @@ std::vector<Setting> settings_of(const NumberChanges& changes, const std::vector
 std::string with_changes(std::string text, const std::string& name, const NumberChanges& changes) {
     std::vector<Found> all = Collector().collect(scene::parse_document(text, name));
     for (const auto& change : changes)
-        if (std::ranges::none_of(all, [&](const Found& its) { return its.number.key == change.first; }))
+        if (std::ranges::none_of(all, [&](const Found& found) { return found.number.key == change.first; }))
             throw_usage("{} has no number {} any more", name, printable(change.first));
     std::ranges::reverse(all);  // so that a change does not move the places of the others
     for (const auto& [number, region] : all) {

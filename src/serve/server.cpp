@@ -139,13 +139,15 @@ struct Server::Impl {
                                              printable(host), printable(name_of(host))));
         const std::string origin = header(connection, "Origin");
         const std::size_t scheme_end = origin.find("://");
-        const std::string its_host = scheme_end == std::string::npos ? origin : origin.substr(scheme_end + 3);
+        const std::string origin_host =
+            scheme_end == std::string::npos ? origin : origin.substr(scheme_end + 3);
         // A proxy may serve the page at any port of its own.
-        if (!origin.empty() && lower(its_host) != lower(host) && !is_among(name_of(its_host), def.hosts))
+        if (!origin.empty() && lower(origin_host) != lower(host) &&
+            !is_among(name_of(origin_host), def.hosts))
             return text_response(403,
                                  fmt::format("requests of the page of '{}' are refused; if this is the page "
                                              "behind a proxy of that name, start with --host {}\n",
-                                             printable(origin), printable(name_of(its_host))));
+                                             printable(origin), printable(name_of(origin_host))));
         if (url.size() < token.size() + 2 || !is_equal(url.substr(1, token.size()), token) ||
             url[token.size() + 1] != '/')
             return text_response(404, "there is no such page; take the address that the program printed\n");
@@ -194,15 +196,15 @@ struct Server::Impl {
     static MHD_Result on_request(void* self, MHD_Connection* connection, const char* url, const char* method,
                                  const char*, const char* upload, std::size_t* upload_bytes, void** kept) {
         return guarded([&] {
-            const Impl& its = *static_cast<const Impl*>(self);
+            const Impl& server = *static_cast<const Impl*>(self);
             if (*kept == nullptr) {
-                if (const auto refused = its.refusal(connection, url, method))
+                if (const auto refused = server.refusal(connection, url, method))
                     return send(connection, *refused);
                 *kept = new Body;
                 return MHD_YES;
             }
             auto& body = *static_cast<Body*>(*kept);
-            if (*upload_bytes == 0) return send(connection, its.answer(connection, url, method, body));
+            if (*upload_bytes == 0) return send(connection, server.answer(connection, url, method, body));
             body.is_too_long = body.is_too_long || body.text.size() + *upload_bytes > kMaxBodyBytes;
             if (!body.is_too_long) body.text.append(upload, *upload_bytes);
             *upload_bytes = 0;

@@ -224,17 +224,17 @@ void Watch::load() {
     shown_->renderer.reset();
     shown_->film.emplace(std::move(film));
     shown_->renderer.emplace(*shown_->film, &shown_->canvas);
-    Film& its = *shown_->film;
-    const VideoDef& video = its.scene().video;
+    Film& shown = *shown_->film;
+    const VideoDef& video = shown.scene().video;
     const Rational fps = video.fps.rational();
-    publish({{"name", its.scene().name},
-             {"frames", its.frame_count()},
+    publish({{"name", shown.scene().name},
+             {"frames", shown.frame_count()},
              {"fps", static_cast<double>(fps.num) / static_cast<double>(fps.den)},
-             {"frame_s", its.time_s(1)},
+             {"frame_s", shown.time_s(1)},
              {"width", video.width_px},
              {"height", video.height_px},
              {"full", {full_px.first, full_px.second}},
-             {"plan", plan_lines(its)}});
+             {"plan", plan_lines(shown)}});
 }
 
 void Watch::publish(Json film) {
@@ -416,8 +416,9 @@ Response Watch::curves(std::int64_t film) {
 Response Watch::change_number(const Json& body) {
     {
         const std::lock_guard lock(mutex_);
-        const auto number = std::ranges::find_if(
-            numbers_, [&](const SceneNumber& its) { return body.contains("key") && body["key"] == its.key; });
+        const auto number = std::ranges::find_if(numbers_, [&](const SceneNumber& candidate) {
+            return body.contains("key") && body["key"] == candidate.key;
+        });
         const Json value = body.value("value", Json());
         if (number == numbers_.end()) return text_response(400, "the scene has no such number\n");
         if (value.is_number() && value.get<double>() != number->value)
@@ -451,7 +452,8 @@ Response Watch::write_file() {
                 changes_.erase(now);
             for (SceneNumber& number : numbers_)
                 if (number.key == key) number.value = value;
-            std::erase_if(def_.settings, [&its = key](const Setting& setting) { return sets(setting, its); });
+            std::erase_if(def_.settings,
+                          [&changed = key](const Setting& setting) { return sets(setting, changed); });
         }
     }
     reload();

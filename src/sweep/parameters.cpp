@@ -124,9 +124,10 @@ std::map<std::string, std::string> identity_of(const SweepDef& sweep) {
         if (const auto* const choice = std::get_if<Choice>(&values)) {
             text += Json(choice->values).dump();
         } else {
-            const auto& its = std::get<Distribution>(values);
-            text += fmt::format("{} {} {} {} {}", kShapeNames[static_cast<std::size_t>(its.shape)],
-                                toml_of(its.first), toml_of(its.second), toml_of(its.min), toml_of(its.max));
+            const auto& distribution = std::get<Distribution>(values);
+            text += fmt::format("{} {} {} {} {}", kShapeNames[static_cast<std::size_t>(distribution.shape)],
+                                toml_of(distribution.first), toml_of(distribution.second),
+                                toml_of(distribution.min), toml_of(distribution.max));
         }
         if (text.size() > kMaxIdentityText) text = hashed(text);
     }

@@ -252,7 +252,7 @@ class SweepReader {
             return "no key of a scene; quote a dotted key, such as \"rope[0].hang.angle_deg\" (see corda "
                    "help scene)";
         Names names;
-        for (const scene::Key& its : scene::keys_of(section)) names.push_back(its.name);
+        for (const scene::Key& known : scene::keys_of(section)) names.push_back(known.name);
         const auto meant = nearest(name, names);
         return meant ? fmt::format("no key of a scene; did you mean \"{}\" in place of \"{}\"?", *meant, name)
                      : std::string("no key of a scene (see corda help scene)");

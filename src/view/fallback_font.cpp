@@ -34,14 +34,14 @@ std::optional<FallbackFont> find_font(char32_t character) {
     FcDefaultSubstitute(wanted.get());
     FcResult result{};
     const Pattern font(FcFontMatch(nullptr, wanted.get(), &result));
-    FcCharSet* its = nullptr;
+    FcCharSet* covered = nullptr;
     FcChar8* path = nullptr;
     FcChar8* family = nullptr;
     FallbackFont found;
     int version = 0;
     FcBool is_scalable = FcFalse;
-    const bool is_good = font && FcPatternGetCharSet(font.get(), FC_CHARSET, 0, &its) == FcResultMatch &&
-                         FcCharSetHasChar(its, character) != FcFalse &&
+    const bool is_good = font && FcPatternGetCharSet(font.get(), FC_CHARSET, 0, &covered) == FcResultMatch &&
+                         FcCharSetHasChar(covered, character) != FcFalse &&
                          FcPatternGetBool(font.get(), FC_SCALABLE, 0, &is_scalable) == FcResultMatch &&
                          is_scalable != FcFalse &&
                          FcPatternGetString(font.get(), FC_FILE, 0, &path) == FcResultMatch &&

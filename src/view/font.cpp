@@ -181,8 +181,10 @@ std::vector<const FallbackFont*> fallback_fonts(const std::vector<std::string>& 
     const Font font;
     for (const std::string& text : texts) {
         for (const FontRun& run : font.runs_of(text)) {
-            const auto is_its = [&](const FallbackFont* other) { return other->name() == run.font->name(); };
-            if (run.font != nullptr && std::ranges::none_of(fonts, is_its)) fonts.push_back(run.font);
+            const auto has_its_name = [&](const FallbackFont* other) {
+                return other->name() == run.font->name();
+            };
+            if (run.font != nullptr && std::ranges::none_of(fonts, has_its_name)) fonts.push_back(run.font);
         }
     }
     return fonts;

@@ -57,9 +57,9 @@ class ChunkInput {
         if (index < 0) fail_damaged(file, "it has no video track");
         if (format->nb_streams > 1) fail_damaged(file, "it has other tracks, which would be lost");
         stream_ = format->streams[index];
-        const AVCodecParameters& its = parameters();
-        if (!is_picture_size(its.width, its.height))
-            fail_damaged(file, fmt::format("its frames would be {}x{} pixels", its.width, its.height));
+        const AVCodecParameters& codec = parameters();
+        if (!is_picture_size(codec.width, codec.height))
+            fail_damaged(file, fmt::format("its frames would be {}x{} pixels", codec.width, codec.height));
     }
 
     [[nodiscard]] const ChunkFile& file() const { return file_; }
@@ -68,8 +68,8 @@ class ChunkInput {
     /// Colours of its first and its last frame, whose numbers count from `first`.
     [[nodiscard]] std::vector<FrameColors> colors(std::int64_t first) const {
         const std::string comment = metadata_entry(*format_, "comment");
-        return {{first, told_patches(comment)},
-                {first + file_.frames - 1, told_patches(comment, "last_patches")}};
+        return {{first, comment_patches(comment)},
+                {first + file_.frames - 1, comment_patches(comment, "last_patches")}};
     }
     /// Gives `take` all packets, in order; their stamps are frame numbers from `first` on. Throws
     /// corda::Error: kMismatch if there are others than one per frame, kInterrupted.
@@ -179,22 +179,23 @@ Rational check_parts(const std::vector<std::string>& parts, ChunkRun& run) {
     std::optional<Traits> first;
     Rational fps;
     for (const std::string& part : parts) {
-        const VerifyReport its = verify_in_child(part);
-        if (!its.ok())
-            throw_error(ExitCode::kMismatch, "'{}' fails its check: {}", part, its.problems.front());
-        fps = its.fps;
-        const Traits traits{{{"size (--size)", fmt::format("{}x{}", its.width_px, its.height_px)},
-                             {"rate (--fps)", fps.text()},
-                             {"codec (--codec, --pix)", fmt::format("{} {}", its.coding(), its.pixel_format)},
-                             {"colour", fmt::format("{} {} {} {} {}", its.range, its.matrix, its.primaries,
-                                                    its.transfer, its.chroma_location)}}};
+        const VerifyReport report = verify_in_child(part);
+        if (!report.ok())
+            throw_error(ExitCode::kMismatch, "'{}' fails its check: {}", part, report.problems.front());
+        fps = report.fps;
+        const Traits traits{
+            {{"size (--size)", fmt::format("{}x{}", report.width_px, report.height_px)},
+             {"rate (--fps)", fps.text()},
+             {"codec (--codec, --pix)", fmt::format("{} {}", report.coding(), report.pixel_format)},
+             {"colour", fmt::format("{} {} {} {} {}", report.range, report.matrix, report.primaries,
+                                    report.transfer, report.chroma_location)}}};
         if (!first) first = traits;
         for (std::size_t i = 0; i < traits.size(); ++i)
             if (const auto& [name, value] = traits[i]; value != (*first)[i].second)
                 fail_differing(part, parts.front(),
                                fmt::format("its {} is {} and not {}", name, value, (*first)[i].second));
-        run.chunks.push_back({std::ssize(run.chunks), its.frames, 0, part});
-        run.frames += its.frames;
+        run.chunks.push_back({std::ssize(run.chunks), report.frames, 0, part});
+        run.frames += report.frames;
     }
     return fps;
 }
@@ -315,12 +316,12 @@ ChunkRun join_videos(const std::vector<std::string>& parts, const std::string& p
             path);
     ChunkRun run;
     const Rational fps = check_parts(parts, run);
-    nlohmann::json told = nlohmann::json::parse(comment);
-    told["fps"] = fps.text();
+    nlohmann::json completed = nlohmann::json::parse(comment);
+    completed["fps"] = fps.text();
     std::optional<std::int64_t> crf;  // the worst, by which verify() judges colours
     for (const std::string& part : parts) crf = std::max(crf, comment_number(comment_in_child(part), "crf"));
-    if (crf) told["crf"] = *crf;
-    const Manifest manifest{.fps = fps, .title = title, .comment = told.dump()};
+    if (crf) completed["crf"] = *crf;
+    const Manifest manifest{.fps = fps, .title = title, .comment = completed.dump()};
     work_in_child(fmt::format("{}", fmt::join(parts, "', '")), bytes_of(run.chunks),
                   [&] { join_chunks(run, manifest, path, options, {.depth = VerifyDepth::kKeyFrames}); });
     return run;

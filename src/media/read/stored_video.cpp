@@ -54,7 +54,7 @@ bool copy_samples(const AVFrame& frame, StoredPicture& picture) {
 
 /// libav reads all but animated WebP.
 struct StoredVideo::Impl {
-    explicit Impl(const std::string& its_path) : path(its_path) {
+    explicit Impl(const std::string& file) : path(file) {
         const std::string kind = file_kind(path);
         if (is_truncated(path, kind) || (kind == "mov" && !read_mp4_boxes(path).whole))
             throw_error(ExitCode::kIo, "'{}' breaks off before its end; copy or render it again", path);
@@ -62,12 +62,12 @@ struct StoredVideo::Impl {
             webp.emplace(path);
             if (!webp->is_open())
                 throw_error(ExitCode::kIo, "libwebp cannot open '{}' as an animated WebP", path);
-            if (const auto told = rate_of_ends(webp->told_ends_ms())) rate = *told;
+            if (const auto fps = rate_of_ends(webp->stated_ends_ms())) rate = *fps;
             return;
         }
         decoder.emplace(path);
-        const AVRational told = decoder->stream().avg_frame_rate;
-        if (told.den > 0) rate = Rational::reduced(told.num, told.den);
+        const AVRational fps = decoder->stream().avg_frame_rate;
+        if (fps.den > 0) rate = Rational::reduced(fps.num, fps.den);
         if (kind != "apng") return;  // whose delays libav rounds
         const ApngTimes times = read_apng_times(path);
         if (times.delay_s.num <= 0) return;

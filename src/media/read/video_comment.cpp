@@ -105,7 +105,7 @@ std::optional<std::int64_t> comment_number(const std::string& comment, const cha
     return json.contains(key) ? whole_number(json[key]) : std::nullopt;
 }
 
-std::vector<ColorPatch> told_patches(const std::string& comment, const char* key) {
+std::vector<ColorPatch> comment_patches(const std::string& comment, const char* key) {
     const Json json = parse_comment(comment);
     std::vector<ColorPatch> patches;
     if (!json.contains(key) || !json[key].is_array()) return patches;

@@ -39,7 +39,8 @@ inline constexpr int kDeepestJsonLevel = 16;
 /// A whole number; std::nullopt if it is something else.
 [[nodiscard]] std::optional<std::int64_t> comment_number(const std::string& comment, const char* key);
 /// The colour patches of a key: "patches" are those of the first frame.
-[[nodiscard]] std::vector<ColorPatch> told_patches(const std::string& comment, const char* key = "patches");
+[[nodiscard]] std::vector<ColorPatch> comment_patches(const std::string& comment,
+                                                      const char* key = "patches");
 /// The comment of a chunk, with the colours of its first and its last frame.
 [[nodiscard]] std::string chunk_comment(const std::vector<FrameColors>& colors);
 /// The comment of a finished video: with the number of its frames and the colours of the first one.

@@ -77,7 +77,7 @@ bool WebpReader::read(Image& picture) {
     return true;
 }
 
-std::vector<std::int64_t> WebpReader::told_ends_ms() const {
+std::vector<std::int64_t> WebpReader::stated_ends_ms() const {
     std::vector<std::int64_t> ends_ms;
     if (!is_open()) return ends_ms;
     const WebPDemuxer* const demuxer = WebPAnimDecoderGetDemuxer(decoder_.get());
@@ -91,10 +91,10 @@ std::vector<std::int64_t> WebpReader::told_ends_ms() const {
     return ends_ms;
 }
 
-std::optional<Rational> rate_of_ends(const std::vector<std::int64_t>& ends, std::optional<Rational> told,
+std::optional<Rational> rate_of_ends(const std::vector<std::int64_t>& ends, std::optional<Rational> stated,
                                      std::int64_t ticks_per_second) {
     if (ends.empty() || ends.back() <= 0) return std::nullopt;
-    if (told && fits(*told, ends, ticks_per_second)) return told;
+    if (stated && fits(*stated, ends, ticks_per_second)) return stated;
     for (const Rational usual :
          {Rational{60, 1}, Rational{30, 1}, Rational{25, 1}, Rational{24, 1}, Rational{50, 1},
           Rational{30000, 1001}, Rational{24000, 1001}, Rational{60000, 1001}})

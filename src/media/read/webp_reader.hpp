@@ -31,7 +31,7 @@ class WebpReader : NonCopyable {
 
     /// Ends of the pictures in ms: of those that were read, or of all as the file states them.
     [[nodiscard]] const std::vector<std::int64_t>& read_ends_ms() const { return ends_ms_; }
-    [[nodiscard]] std::vector<std::int64_t> told_ends_ms() const;
+    [[nodiscard]] std::vector<std::int64_t> stated_ends_ms() const;
 
   private:
     struct Free {
@@ -45,10 +45,10 @@ class WebpReader : NonCopyable {
     std::vector<std::int64_t> ends_ms_;
 };
 
-/// The rate whose frames, rounded to ticks, end at these times: of several `told`, a usual one, or the
+/// The rate whose frames, rounded to ticks, end at these times: of several `stated`, a usual one, or the
 /// simplest. The times are those of frames 1, 2, ... and of the end; std::nullopt if no rate fits.
 [[nodiscard]] std::optional<Rational> rate_of_ends(const std::vector<std::int64_t>& ends,
-                                                   std::optional<Rational> told = {},
+                                                   std::optional<Rational> stated = {},
                                                    std::int64_t ticks_per_second = 1000);
 
 }  // namespace corda::media

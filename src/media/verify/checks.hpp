@@ -45,13 +45,13 @@ struct DecodedVideo {
 /// Decodes the frames of the file at `path`, of a kind that libav demuxes, and measures the patches of
 /// `rendered`, as far as these frames are decoded, and else those that the file's comment states for the
 /// first one. Fills in the coding, size, colour tags and alpha of `report`, and the number of frames whose
-/// time stamp can be right. `told`: the rate of a GIF, if it fits. Throws corda::Error: kTemporary if there
+/// time stamp can be right. `stated`: the rate of a GIF, if it fits. Throws corda::Error: kTemporary if there
 /// is not enough memory, kInterrupted if cancelled; nothing else for a bad file.
-[[nodiscard]] DecodedVideo decode(const std::string& path, VerifyDepth depth, std::optional<Rational> told,
+[[nodiscard]] DecodedVideo decode(const std::string& path, VerifyDepth depth, std::optional<Rational> stated,
                                   const std::vector<FrameColors>& rendered, VerifyReport& report);
 
-/// The same for an animated WebP, by libwebp. `told`: see rate_of_ends().
-[[nodiscard]] DecodedVideo decode_webp(const std::string& path, std::optional<Rational> told,
+/// The same for an animated WebP, by libwebp. `stated`: see rate_of_ends().
+[[nodiscard]] DecodedVideo decode_webp(const std::string& path, std::optional<Rational> stated,
                                        const std::vector<FrameColors>& rendered, VerifyReport& report);
 
 /// Rendered colours of a frame; null if `rendered`, in the order of the frames, has none.

@@ -72,9 +72,9 @@ constexpr std::int64_t kGifTicks = 100;  // per second
 /// Decodes one file and fills in a DecodedVideo.
 class Decoding {
   public:
-    Decoding(DecodedVideo& video, VerifyReport& report, VerifyDepth depth, std::optional<Rational> told,
+    Decoding(DecodedVideo& video, VerifyReport& report, VerifyDepth depth, std::optional<Rational> stated,
              const std::vector<FrameColors>& rendered)
-        : video_(video), report_(report), depth_(depth), told_(told), rendered_(rendered) {}
+        : video_(video), report_(report), depth_(depth), stated_(stated), rendered_(rendered) {}
 
     void run(const std::string& path) {
         if (!open(path)) return;
@@ -134,9 +134,9 @@ class Decoding {
     /// Matroska counts milliseconds: then the rate that the file states gives the nearest stamp.
     void find_rounded_rate() {
         if (!is_kind("matroska")) return;
-        const auto told = comment_rate(video_.comment);
+        const auto stated = comment_rate(video_.comment);
         const AVRational average = decoder_->stream().avg_frame_rate;
-        const Rational rate = told ? *told : Rational{average.num, average.den};
+        const Rational rate = stated ? *stated : Rational{average.num, average.den};
         if (rate.num <= 0 || rate.den <= 0) return;
         rounded_to_ = rate;
         video_.is_rounded = true;
@@ -161,8 +161,8 @@ class Decoding {
         const std::int64_t delay = ends_.front();
         std::int64_t k = 0;
         const bool is_even = std::ranges::all_of(ends_, [&](std::int64_t end) { return end == ++k * delay; });
-        auto fps = rate_of_ends(ends_, told_, kGifTicks);
-        if (is_even && fps != told_ && delay > 0) fps = Rational::reduced(kGifTicks, delay);
+        auto fps = rate_of_ends(ends_, stated_, kGifTicks);
+        if (is_even && fps != stated_ && delay > 0) fps = Rational::reduced(kGifTicks, delay);
         video_.is_rounded = !is_even;
         if (fps)
             video_.tick = {fps->den, fps->num};
@@ -255,7 +255,7 @@ class Decoding {
 
     [[nodiscard]] std::vector<ColorPatch> patches_of(std::int64_t number) const {
         if (const FrameColors* const known = find_rendered(rendered_, number)) return known->patches;
-        return number == 0 ? told_patches(video_.comment) : std::vector<ColorPatch>();
+        return number == 0 ? comment_patches(video_.comment) : std::vector<ColorPatch>();
     }
 
     void describe_first_frame(const AVFrame& frame) {
@@ -297,7 +297,7 @@ class Decoding {
     DecodedVideo& video_;
     VerifyReport& report_;
     VerifyDepth depth_;
-    std::optional<Rational> told_;  ///< the rate that the file was rendered for
+    std::optional<Rational> stated_;  ///< the rate that the file was rendered for
     const std::vector<FrameColors>& rendered_;
     LogCapture log_;
     std::optional<Decoder> decoder_;
@@ -323,14 +323,14 @@ const FrameColors* find_rendered(const std::vector<FrameColors>& rendered, std::
     return known != rendered.end() && known->frame == frame ? &*known : nullptr;
 }
 
-DecodedVideo decode(const std::string& path, VerifyDepth depth, std::optional<Rational> told,
+DecodedVideo decode(const std::string& path, VerifyDepth depth, std::optional<Rational> stated,
                     const std::vector<FrameColors>& rendered, VerifyReport& report) {
     DecodedVideo video;
-    Decoding(video, report, depth, told, rendered).run(path);
+    Decoding(video, report, depth, stated, rendered).run(path);
     return video;
 }
 
-DecodedVideo decode_webp(const std::string& path, std::optional<Rational> told,
+DecodedVideo decode_webp(const std::string& path, std::optional<Rational> stated,
                          const std::vector<FrameColors>& rendered, VerifyReport& report) {
     DecodedVideo video;
     WebpReader reader(path);
@@ -361,7 +361,7 @@ DecodedVideo decode_webp(const std::string& path, std::optional<Rational> told,
     }
     video.step = 1;
     video.end = report.frames;
-    const auto fps = rate_of_ends(reader.read_ends_ms(), told);
+    const auto fps = rate_of_ends(reader.read_ends_ms(), stated);
     if (fps) {
         video.tick = {fps->den, fps->num};
     } else {

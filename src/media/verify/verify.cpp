@@ -79,9 +79,9 @@ double tolerance_of(const DecodedVideo& video, const VerifyReport& report) {
     if (codec != nullptr && codec->tolerance > 0.0) return codec->tolerance;
     // Rate factors go up to 51 for H.264 and H.265, and to 63 for others.
     const std::int64_t most = codec != nullptr && codec->crf ? codec->crf->second : 63;
-    const auto told = std::clamp<std::int64_t>(comment_number(video.comment, "crf").value_or(0), 0, most);
+    const auto crf = std::clamp<std::int64_t>(comment_number(video.comment, "crf").value_or(0), 0, most);
     const bool is_coarse = codec != nullptr && codec->has_coarse_444 && report.pixel_format == "yuv444p";
-    return patch_tolerance(static_cast<int>(told * 51 / most), is_coarse);
+    return patch_tolerance(static_cast<int>(crf * 51 / most), is_coarse);
 }
 
 void check_patches(const DecodedVideo& video, VerifyReport& report) {
