@@ -259,9 +259,19 @@ double subframe_s(const VideoDef& video, double time_s, double shutter, double e
     return from_s + (i + 0.5) / video.subframes * (until_s - from_s);
 }
 
+std::vector<double> arrow_times_s(const Scene& scene) {
+    constexpr int kInstants = 250;
+    std::vector<double> times_s;
+    for (int i = 0; i < kInstants && scene.style.arrows != Arrows::kNone; ++i)
+        times_s.push_back(scene.world.duration_s * i / kInstants);
+    return times_s;
+}
+
 Timeline recorded_times(const Scene& scene, const System& system, std::vector<double> times_s,
                         std::size_t budget_bytes) {
     const VideoDef& video = scene.video;
+    const std::vector<double> arrows_s = arrow_times_s(scene);
+    times_s.insert(times_s.end(), arrows_s.begin(), arrows_s.end());
     const std::int64_t last_frame = last_frame_of(scene);
     constexpr std::size_t kMaxNumbersPerParticle = 5;
     const std::size_t state_bytes = kMaxNumbersPerParticle * sizeof(double) * system.particle_count();

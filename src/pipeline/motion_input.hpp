@@ -28,8 +28,12 @@ namespace corda::pipeline {
 /// The time of sub-frame `i` of an exposure at `time_s`, clipped to a motion that ends at `end_s`.
 [[nodiscard]] double subframe_s(const VideoDef& video, double time_s, double shutter, double end_s, int i);
 
-/// The times to record: those of frames, `times_s`, and those within exposures if they take at most half of
-/// the memory.
+/// The instants whose arrows set the scale of all, which so does not depend on the frame rate; none without
+/// arrows.
+[[nodiscard]] std::vector<double> arrow_times_s(const Scene& scene);
+
+/// The times to record: those of frames, `times_s`, arrow_times_s(), and those within exposures if they take
+/// at most half of the memory.
 [[nodiscard]] Timeline recorded_times(const Scene& scene, const System& system, std::vector<double> times_s,
                                       std::size_t budget_bytes);
 

@@ -9,11 +9,13 @@
 #include "corda/core/cancel.hpp"
 #include "corda/core/text.hpp"
 #include "corda/pipeline/film.hpp"
+#include "corda/pipeline/motion_input.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/pipeline/tracked_particle.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/sim/forces/forces.hpp"
 #include "corda/sim/system.hpp"
+#include "corda/view/words.hpp"
 
 namespace corda::pipeline {
 namespace {
@@ -98,10 +100,12 @@ CameraDef SceneRenderer::fit(std::span<const MotionBounds> motion, const sim::Hi
 view::ArrowExtents SceneRenderer::arrow_extents(
     double end_s, const std::function<const State&(double time_s)>& state_at) const {
     view::ArrowExtents extents;
-    for (std::int64_t k = 0; k == 0 || scene_->video.scene_rate().time_s(k) <= end_s; ++k) {
+    const std::vector<double> instants_s = arrow_times_s(*scene_);
+    const Timeline times(scene_->video.scene_rate(), last_frame_of(*scene_), instants_s);
+    for (std::size_t i = 0; i < times.size() && times.time_s(i) <= end_s; ++i) {
         check_cancelled();
-        for (const view::Arrow& arrow : view_.arrows().of(state_at(scene_->video.scene_rate().time_s(k))))
-            extents.include(arrow);
+        extents.include(view_.arrows().of(state_at(times.time_s(i))),
+                        std::binary_search(instants_s.begin(), instants_s.end(), times.time_s(i)));
     }
     return extents;
 }
@@ -144,8 +148,9 @@ view::CameraTrack SceneRenderer::track(double end_s,
             const State& state = state_at(times_s[k]);
             for (std::size_t i = 0; i < about.size(); ++i)
                 about[i].include(state.x_m[i] - path[k].x, state.y_m[i] - path[k].y);
-            for (const view::Arrow& arrow : view_.arrows().of(state))
-                arrows.include({arrow.at_m - path[k], arrow.value});
+            std::vector<view::Arrow> all = view_.arrows().of(state);
+            for (view::Arrow& arrow : all) arrow.at_m = arrow.at_m - path[k];
+            arrows.include(all, false);
         }
         camera.height_m = height_about(about, arrows);
     }

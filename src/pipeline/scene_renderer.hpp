@@ -57,13 +57,14 @@ class SceneRenderer : NonCopyable {
     [[nodiscard]] view::CameraTrack track(double end_s,
                                           const std::function<const State&(double time_s)>& state_at,
                                           CameraDef& camera) const;
-    /// The extents of arrows up to `end_s`, at whose frame times `state_at` is called in order.
+    /// The extents of arrows up to `end_s`, at whose frame times and arrow_times_s() `state_at` is called in
+    /// order.
     [[nodiscard]] view::ArrowExtents arrow_extents(
         double end_s, const std::function<const State&(double time_s)>& state_at) const;
     /// Sets the scale of arrows, before fit().
     void set_arrows(const view::ArrowExtents& extents) {
         view_.set_arrows(extents);
-        overlay_.set_arrows(view_.arrows().pixels_per_unit(), extents.largest());
+        overlay_.set_arrows(view_.arrows().pixels_per_unit(), extents.longest(), extents.is_cut());
     }
     void set_plots(std::span<const view::PlotData> data) { overlay_.set_plots(data, view_.body_colors()); }
     /// Lower bound on the scale of the camera that fit() returns for a motion within `bounds`.

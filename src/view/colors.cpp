@@ -78,7 +78,14 @@ constexpr double kBelowZero = 0.02;
 constexpr double kMinEnd = 1e-12;
 constexpr double kMinStrain = 1e-9;
 
-/// The next of these digits times a power of 10, whose halves are short.
+/// True if the background is light.
+bool is_light(const StyleDef& style) {
+    const Color text = text_color(look_of(style));
+    return text.g < 128;
+}
+
+}  // namespace
+
 double rounded_end(double value) {
     // One of them is 1, so that the result is rounded once.
     double power = 1.0;
@@ -90,14 +97,6 @@ double rounded_end(double value) {
     }
     return 10.0 * power / inverse;
 }
-
-/// True if the background is light.
-bool is_light(const StyleDef& style) {
-    const Color text = text_color(look_of(style));
-    return text.g < 128;
-}
-
-}  // namespace
 
 Look look_of(const StyleDef& style) {
     Look look = style.theme == Theme::kPaper ? paper() : dark();

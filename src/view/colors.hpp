@@ -44,6 +44,10 @@ struct ColorScale {
     [[nodiscard]] Color color(double value) const;
 };
 
+/// A round end of a scale that is not below `value` and not above 2 times it: a digit whose half is short,
+/// times a power of 10.
+[[nodiscard]] double rounded_end(double value);
+
 /// The scale of a quantity: from 0 to high, or from -high to high through grey if there are values well below
 /// 0. `high` is a round number above the largest value, or above 98 % of the values if that is less than half
 /// of the largest.

@@ -259,11 +259,13 @@ void Overlay::set_labels(std::vector<BodyLabel> labels, std::span<const MotionBo
     }
 }
 
-void Overlay::set_arrows(double pixels_per_unit, double largest) {
+void Overlay::set_arrows(double pixels_per_unit, double longest, bool is_cut) {
     arrow_text_.clear();
-    if (arrows_ == Arrows::kNone || !std::isnormal(largest)) return;
-    const double value = round_number_below(largest).value();
-    arrow_text_ = localized(quantity_text(value, arrows_ == Arrows::kVelocity ? "m/s" : "N"), def_.language);
+    if (arrows_ == Arrows::kNone || !std::isnormal(longest)) return;
+    is_arrow_cut_ = is_cut;
+    const double value = is_cut ? longest : round_number_below(longest).value();
+    arrow_text_ = (is_cut ? "≥ " : "") +
+                  localized(quantity_text(value, arrows_ == Arrows::kVelocity ? "m/s" : "N"), def_.language);
     arrow_text_px_ = font_.width_px(arrow_text_, em_px_);
     arrow_px_ = value * pixels_per_unit;
     const int time_px = time_ ? font_.width_px(time_text(kTwoDigitsS), em_px_) + rounded(kLine * em_px_) : 0;
@@ -283,7 +285,7 @@ void Overlay::draw_curves(double time_s, DrawList& list) const {
     list.layers.back().is_note = true;
     const double end_px = width_ - edge_px_;
     const double y_px = height_ - edge_px_ - 0.5 * kAscent * em_px_;
-    add_arrow({end_px - arrow_px_, y_px}, {end_px, y_px}, side_px_, false, list);
+    add_arrow({end_px - arrow_px_, y_px}, {end_px, y_px}, side_px_, false, is_arrow_cut_, list);
 }
 
 PixelRect Overlay::label_box(const BodyLabel& label, PixelPoint at, PixelPoint from, int turns,

@@ -57,8 +57,8 @@ class Overlay {
     }
     /// Sets the scale of the energies of captions, which decides on their unit.
     void set_energy_scale(double scale_j) { energy_scale_j_ = scale_j; }
-    /// Sets the scale of arrows and the size of the largest one.
-    void set_arrows(double pixels_per_unit, double largest);
+    /// Sets the scale of arrows and the size of the longest one; cut: some are larger.
+    void set_arrows(double pixels_per_unit, double longest, bool is_cut);
     /// Sets the labels of bodies, and adds their extents for particles that stay within `motion`.
     void set_labels(std::vector<BodyLabel> labels, std::span<const MotionBounds> motion,
                     std::vector<Drawn>& drawn);
@@ -143,6 +143,7 @@ class Overlay {
     int side_px_;  ///< the shorter one of the frame
     int em_px_;
     int edge_px_;          ///< from the edges of the frame to the texts
+    bool is_arrow_cut_ = false;
     int legend_x_px_ = 0;  ///< where the room next to the legend ends
     int title_top_px_ = 0;
     int method_baseline_px_ = 0;

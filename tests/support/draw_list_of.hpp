@@ -6,6 +6,7 @@
 
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/live_plot_data.hpp"
+#include "corda/pipeline/motion_input.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/sim/recording.hpp"
 #include "corda/sim/system.hpp"
@@ -54,7 +55,7 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
         overlay.set_scale(view::scale_of(*quantity, histogram, scene.style));
     }
     scene_view.set_arrows(arrows);
-    overlay.set_arrows(scene_view.arrows().pixels_per_unit(), arrows.largest());
+    overlay.set_arrows(scene_view.arrows().pixels_per_unit(), arrows.longest(), arrows.is_cut());
     view::DrawList list;
     const view::Camera map(camera, system.origin_m, width_px, height_px);
     scene_view.draw(state, map, list, trails);
@@ -105,8 +106,10 @@ inline view::DrawList draw_list_of(Film& film, double time_s) {
     const Scene& scene = film.scene();
     const view::SceneView view(film.system(), scene.world.gravity_m_s2, scene.style, scene.body_styles,
                                scene.video.width_px, scene.video.height_px);
-    for (std::int64_t k = 0; k <= film.last_frame(); ++k)
-        for (const view::Arrow& arrow : view.arrows().of(film.state(k))) arrows.include(arrow);
+    for (std::int64_t k = 0; k <= film.last_frame() && scene.style.arrows != Arrows::kNone; ++k)
+        arrows.include(view.arrows().of(film.state(k)), false);
+    for (const double instant_s : pipeline::arrow_times_s(scene))
+        arrows.include(view.arrows().of(film.state_at(instant_s)), true);
     std::vector<view::Trail> trails(test::traced(film).size());
     const double trail_s = film.scene().style.trail_s;
     for (std::int64_t k = 0; k <= film.last_frame() && !trails.empty(); ++k) {

@@ -69,6 +69,47 @@ TEST(FilmArrows, HaveALegendOfARoundValueInBlurredFramesToo) {
         EXPECT_EQ(blurred.pixel(x, box.y0 + 2)[1], sharp.pixel(x, box.y0 + 2)[1]) << x;
 }
 
+/// A string that falls and snaps, in a picture of a given camera.
+Scene snap(int fps) {
+    return parse_scene(R"(schema = 1
+[world]
+duration = 2
+[[rope]]
+string = true
+hang = { length = 1, links = 6, angle_deg = 170 }
+[solver]
+method = "exact"
+[style]
+arrows = "tension"
+[overlay]
+scale_bar = false
+[camera]
+center = [0.0, 0.0]
+height = 3.0
+[video]
+size = [320, 240]
+fps = )" + std::to_string(fps),
+                       "snap.toml");
+}
+
+TEST(FilmArrows, OfASnapAreCutAndExplained) {
+    Film film(snap(30));
+    const double time_s = 0.0;
+    const view::DrawList list = FilmRenderer::list_poses(film, {&time_s, 1});
+    ASSERT_EQ(list.texts.size(), 2U);
+    EXPECT_THAT(list.texts[0].utf8, testing::MatchesRegex("≥ [1-9]0* N"));
+    Film calm(pendulum("arrows = \"tension\"\n"));
+    EXPECT_THAT(FilmRenderer::list_poses(calm, {&time_s, 1}).texts[0].utf8,
+                testing::MatchesRegex("[125]0* N"));
+}
+
+TEST(FilmArrows, HaveOneScaleAtAnyFrameRate) {
+    Film fast(snap(60));
+    Film slow(snap(20));
+    for (const double time_s : {0.0, 0.5, 1.0, 1.5})
+        EXPECT_TRUE(test::equal_images(fast.still(time_s), slow.still(time_s))) << time_s;
+}
+
 TEST(FilmArrows, EqualTheReferenceByteForByte) {
     for (const char* const style :
          {"arrows = \"tension\"\n", "arrows = \"velocity\"\ntrail_s = 0.4\ntrail_of = [1, -1]\n"}) {

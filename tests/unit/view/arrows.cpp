@@ -81,8 +81,8 @@ TEST(Arrows, HaveTheLongestAtAShareOfThePicture) {
     const System system = build_system(std::vector{reference::straight_rope(1, 1.0, 0.0)});
     ArrowLayer layer = layer_of(system, Arrows::kVelocity);
     ArrowExtents extents;
-    for (const Arrow& arrow : layer.of(state_of(system))) extents.include(arrow);
-    EXPECT_EQ(extents.largest(), 5.0);
+    extents.include(layer.of(state_of(system)), false);
+    EXPECT_EQ(extents.longest(), 5.0);
     layer.set_extents(extents);
     EXPECT_DOUBLE_EQ(layer.pixels_per_unit(), 0.22 * kShorterPx / 5.0);
     DrawList list;
@@ -94,12 +94,92 @@ TEST(Arrows, HaveTheLongestAtAShareOfThePicture) {
     EXPECT_GT(list.capsules[0].length, 0.9F * 0.22F * 480.0F);
 }
 
+/// The extents of a motion in which 5 m/s are usual, and `snaps` of 250 instants have more.
+ArrowExtents extents_with(int snaps, double snap_m_s) {
+    ArrowExtents extents;
+    for (int i = 0; i < 250; ++i) {
+        const Arrow arrow{{}, {0.0, i < snaps ? snap_m_s : 5.0}};
+        extents.include({&arrow, 1}, true);
+    }
+    return extents;
+}
+
+TEST(Arrows, FarLargerThanThoseOfMostInstantsAreCut) {
+    EXPECT_EQ(extents_with(0, 0.0).longest(), 5.0);
+    EXPECT_EQ(extents_with(5, 7.0).longest(), 7.0);
+    EXPECT_FALSE(extents_with(5, 8.0).is_cut());
+    EXPECT_TRUE(extents_with(1, 8.1).is_cut());
+    for (const int snaps : {1, 25}) EXPECT_EQ(extents_with(snaps, 1e9).longest(), 8.0);
+    EXPECT_EQ(extents_with(26, 512.0).longest(), 512.0);  // not rare
+    EXPECT_FALSE(extents_with(26, 512.0).is_cut());
+    ArrowExtents extents = extents_with(0, 0.0);
+    const Arrow of_frame{{}, {500.0, 0.0}};
+    extents.include({&of_frame, 1}, false);
+    EXPECT_EQ(extents.longest(), 8.0);  // whether a frame shows the snap or an instant
+    const Arrow slack;
+    for (int i = 0; i < 10'000; ++i) extents.include({&slack, 1}, true);
+    EXPECT_EQ(extents.longest(), 8.0);
+}
+
+TEST(Arrows, ThatAreCutHaveTwoHeadsAndTheLongestLength) {
+    const System system = build_system(std::vector{reference::straight_rope(1, 1.0, 0.0)});
+    ArrowLayer layer = layer_of(system, Arrows::kVelocity);
+    layer.set_extents(extents_with(1, 500.0));
+    const auto drawn = [&](double speed_m_s) {
+        State state = state_of(system);
+        state.vx_m_s.back() = speed_m_s;
+        state.vy_m_s.back() = 0.0;
+        DrawList list;
+        list.width = list.height = static_cast<int>(kShorterPx);
+        layer.draw(state, Camera(CameraDef{Vec2{}, 4.0}, system.origin_m, list.width, list.height), list);
+        double end_px = 0.0;
+        for (const Capsule& line : list.capsules)
+            end_px = std::max(end_px, static_cast<double>(surroundings(line, line.radius).x1));
+        return std::pair{list.capsules.size(), end_px};
+    };
+    const auto [lines, end_px] = drawn(8.0);
+    const auto [lines_of_cut, end_of_cut_px] = drawn(500.0);
+    EXPECT_EQ(lines_of_cut, 2 * lines - 1);  // two heads and a shaft
+    EXPECT_EQ(end_of_cut_px, end_px);
+    EXPECT_EQ(drawn(3.0).first, lines);
+}
+
+/// The highest pixel of the arrows of a rope's tensions that hangs straight down from y = 240.
+double top_px(int links, double tension_n) {
+    const System system = build_system(std::vector{reference::straight_rope(links, 1.0, 0.0)});
+    ArrowLayer layer = layer_of(system, Arrows::kTension);
+    State state = state_of(system);
+    std::fill(state.tension_n.begin(), state.tension_n.end(), 10.0);
+    for (std::size_t i = 0; i < system.particle_count(); ++i) {
+        state.x_m[i] = 0.0;
+        state.y_m[i] = -1.0 * static_cast<double>(i) / links;
+    }
+    ArrowExtents extents;
+    extents.include(layer.of(state), false);
+    layer.set_extents(extents);
+    std::fill(state.tension_n.begin(), state.tension_n.end(), tension_n);
+    DrawList list;
+    list.width = list.height = static_cast<int>(kShorterPx);
+    layer.draw(state, Camera(CameraDef{Vec2{}, 5.0}, Vec2{}, list.width, list.height), list);
+    EXPECT_FALSE(list.capsules.empty());
+    double top = kShorterPx;
+    for (const Capsule& line : list.capsules)
+        top = std::min(top, static_cast<double>(surroundings(line, line.radius).y0));
+    return top;
+}
+
+TEST(Arrows, OfTensionEndBelowTheSupport) {
+    // A link of 96 px, an arrow of 106, and ropes with an arrow near the pin.
+    for (const int links : {1, 2, 3, 4, 12, 40})
+        for (const double tension_n : {10.0, 7.0}) EXPECT_GT(top_px(links, tension_n), 241.0) << links;
+}
+
 TEST(Arrows, OfTensionInARopeDoNotTouchAndSpecksAreLeftOut) {
     const System rope = build_system(std::vector{reference::straight_rope(40, 4.0, 0.0)});
     State state = state_of(rope);
     ArrowLayer layer = layer_of(rope, Arrows::kTension);
     ArrowExtents extents;
-    for (const Arrow& arrow : layer.of(state)) extents.include(arrow);
+    extents.include(layer.of(state), false);
     layer.set_extents(extents);
     const double longest_m = 1.0;
     const std::vector<Arrow> apart = layer.of(state, longest_m);
@@ -121,11 +201,10 @@ TEST(Arrows, OfTensionInARopeDoNotTouchAndSpecksAreLeftOut) {
 
 TEST(Arrows, ExtendAsFarAsTheyWereIncluded) {
     ArrowExtents extents;
-    extents.include({{1.0, 2.0}, {3.0, 0.0}});
-    extents.include({{5.0, 2.0}, {-1e-3, 100.0}});
-    extents.include({{7.0, 2.0}, {}});
+    const Arrow arrows[] = {{{1.0, 2.0}, {3.0, 0.0}}, {{5.0, 2.0}, {-1e-3, 100.0}}, {{7.0, 2.0}, {}}};
+    extents.include(arrows, false);
     std::vector<Drawn> drawn;
-    extents.list(2.0, 0.5, drawn);
+    extents.list(extents.longest(), 2.0, 0.5, drawn);
     double right_px = 0.0;
     double up_px = 0.0;
     for (const Drawn& one : drawn) {
@@ -135,7 +214,10 @@ TEST(Arrows, ExtendAsFarAsTheyWereIncluded) {
     }
     EXPECT_EQ(right_px, 2.0 * 3.0 + 0.5);
     EXPECT_GE(up_px, 2.0 * 100.0 + 0.5);
-    EXPECT_LE(up_px, 2.0 * extents.largest() + 0.5);
+    EXPECT_LE(up_px, 2.0 * extents.longest() + 0.5);
+    drawn.clear();
+    extents.list(10.0, 2.0, 0.5, drawn);
+    for (const Drawn& one : drawn) EXPECT_LE(one.up_px, 2.0 * 10.0 + 0.5);
 }
 
 TEST(Arrows, EndAtTheirPointsAndShrinkTheirHeads) {
@@ -143,7 +225,7 @@ TEST(Arrows, EndAtTheirPointsAndShrinkTheirHeads) {
         DrawList list;
         list.width = list.height = 200;
         list.add_layer({});
-        add_arrow({50.0, 60.0}, {50.0 + length_px, 60.0}, kShorterPx, false, list);
+        add_arrow({50.0, 60.0}, {50.0 + length_px, 60.0}, kShorterPx, false, false, list);
         double end_px = 0.0;
         double low_px = 200.0;
         for (const Capsule& line : list.capsules) {
@@ -157,7 +239,7 @@ TEST(Arrows, EndAtTheirPointsAndShrinkTheirHeads) {
     DrawList none;
     none.width = none.height = 200;
     none.add_layer({});
-    add_arrow({50.0, 60.0}, {50.5, 60.0}, kShorterPx, false, none);
+    add_arrow({50.0, 60.0}, {50.5, 60.0}, kShorterPx, false, false, none);
     EXPECT_TRUE(none.capsules.empty());
 }
 
