@@ -84,6 +84,11 @@ void report_plan(const Console& console, Film& film) {
     warn_of_horizon(console, film);
 }
 
+void warn_of_room(const Console& console, Film& film) {
+    for (const std::string& problem : film.left_out())
+        console.warning(fmt::format("{}: {}", film.scene().source, problem));
+}
+
 void warn_of_branch(const Console& console, const Film& film) {
     const std::optional<double> branched_s = film.diagnostics().branched_s;
     const bool is_named =

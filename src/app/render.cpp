@@ -266,7 +266,7 @@ std::vector<Film> make_films(const Console& console, const std::vector<Scene>& s
                                  counted(scenes.size() > 1 ? film.frame_count() : count, "frame"),
                                  video.width_px, video.height_px, video.fps.rational().text(),
                                  video.speed == Rational{1, 1} ? "" : ", at speed " + video.speed.text()));
-        static_cast<void>(film.camera());
+        warn_of_room(console, film);
     }
     return films;
 }

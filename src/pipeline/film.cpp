@@ -427,6 +427,11 @@ bool Film::shows_nothing() const {
     return impl_->drawing.renderer.shows_nothing();
 }
 
+std::vector<std::string> Film::left_out() {
+    impl_->find_camera();
+    return pipeline::left_out_of(scene(), impl_->drawing.renderer.plots());
+}
+
 GlInfo Film::gl() {
     const pipeline::SceneRenderer::Use use(impl_->drawing.renderer, pipeline::SceneRenderer::Needs::kContext);
     const gl::Context& context = impl_->drawing.renderer.context();
@@ -482,14 +487,6 @@ void FilmRenderer::keep(Film& film, std::span<const double> times_s) {
 
 bool FilmRenderer::is_empty(Film& film, double time_s) {
     return film.impl_->is_empty(time_s);
-}
-
-const Image& FilmRenderer::image() const {
-    return context_->renderer.image();
-}
-
-bool FilmRenderer::shows_nothing() const {
-    return context_->renderer.shows_nothing();
 }
 
 }  // namespace corda

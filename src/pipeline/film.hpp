@@ -121,6 +121,9 @@ class Film {
     [[nodiscard]] std::vector<Vec2> to_pixels(std::span<const Vec2> positions_m, double time_s = 0.0);
     /// True if the last picture was empty.
     [[nodiscard]] bool shows_nothing() const;
+    /// Plots, and names of their curves, that are left out of the pictures for lack of room: sentences with a
+    /// remedy. Throws what camera() throws.
+    [[nodiscard]] std::vector<std::string> left_out();
     /// The OpenGL driver. Throws kNoGl.
     [[nodiscard]] GlInfo gl();
 

@@ -42,9 +42,9 @@ class FilmRenderer : NonCopyable {
     /// Draws the frame at a time; returns what may differ from the last one. Throws as Film::still().
     Damage draw(double time_s);
     /// The last frame.
-    [[nodiscard]] const Image& image() const;
+    [[nodiscard]] const Image& image() const { return context_->renderer.image(); }
     /// True if the last frame was empty.
-    [[nodiscard]] bool shows_nothing() const;
+    [[nodiscard]] bool shows_nothing() const { return context_->renderer.shows_nothing(); }
 
     // What the pipeline needs of a film beyond its public interface. None may be called while another thread
     // uses the film.

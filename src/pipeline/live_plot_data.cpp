@@ -13,6 +13,7 @@
 
 #include "corda/core/timeline.hpp"
 #include "corda/pipeline/tracked_particle.hpp"
+#include "corda/scene/schema.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/words.hpp"
@@ -248,6 +249,25 @@ std::vector<PlotData> LivePlotData::read(const std::vector<MethodDef>& methods, 
         if (all[p].y.is_log) raise_zeros(subject.size_m, all[p]);
     }
     return all;
+}
+
+std::vector<std::string> left_out_of(const Scene& scene, std::span<const view::PlotPanel> shown) {
+    const std::vector<LivePlot>& plots = scene.overlay.plots;
+    const auto& words = scene::find_key("overlay", "plots")->type.choices;
+    std::vector<std::string> sentences;
+    for (std::size_t i = 0; i < plots.size(); ++i) {
+        const bool has_room = i < shown.size() && shown[i].has_room();
+        const std::vector<std::string> names = has_room ? shown[i].nameless() : std::vector<std::string>();
+        if (has_room && names.empty()) continue;
+        const std::string what =
+            has_room ? fmt::format("names no curve from \"{}\" on", names[0]) : "is left out";
+        sentences.push_back(fmt::format(
+            "overlay.plots: \"{}\" has little room in {}x{} pixels and {}; give a "
+            "larger size{}{}",
+            words[static_cast<std::size_t>(plots[i])], scene.video.width_px, scene.video.height_px, what,
+            plots.size() > 1 ? ", fewer plots" : "", has_room ? " or shorter labels" : ""));
+    }
+    return sentences;
 }
 
 }  // namespace corda::pipeline

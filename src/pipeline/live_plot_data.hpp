@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "corda/scene/scene.hpp"
@@ -31,5 +33,9 @@ class LivePlotData {
     const Scene* scene_;
     const System* system_;
 };
+
+/// See Film::left_out(). `shown`: the panels of the first plots.
+[[nodiscard]] std::vector<std::string> left_out_of(const Scene& scene,
+                                                   std::span<const view::PlotPanel> shown);
 
 }  // namespace corda::pipeline

@@ -67,6 +67,7 @@ class SceneRenderer : NonCopyable {
         overlay_.set_arrows(view_.arrows().pixels_per_unit(), extents.longest(), extents.is_cut());
     }
     void set_plots(std::span<const view::PlotData> data) { overlay_.set_plots(data, view_.body_colors()); }
+    [[nodiscard]] std::span<const view::PlotPanel> plots() const { return overlay_.plots(); }
     /// Lower bound on the scale of the camera that fit() returns for a motion within `bounds`.
     [[nodiscard]] double largest_pixels_per_metre(const MotionBounds& bounds) const;
     /// The map to pixels of a camera with center and height.

@@ -36,7 +36,8 @@ constexpr double kShortLabel = 6.0;
 
 /// Least share of the picture's width next to a legend in which a title is wrapped.
 constexpr double kMinBeside = 0.5;
-constexpr std::size_t kMaxTitleLines = 3;
+/// Of a title or a text.
+constexpr std::size_t kMaxLines = 3;
 
 /// Smallest shorter side of a frame that has overlays by default.
 constexpr int kMinSidePx = 160;
@@ -165,25 +166,27 @@ int Overlay::room_px(int top_px) const {
     return (is_below ? width_ - edge_px_ : legend_x_px_) - edge_px_;
 }
 
-bool Overlay::wrap_title() {
-    const auto fits = [&](const std::string& text) {
-        return font_.width_px(text, title_px()) <= title_lines_.back().room_px;
-    };
-    title_lines_ = {{def_.title, room_px(title_top_px_)}};
-    while (!fits(title_lines_.back().text)) {
-        const std::string rest = title_lines_.back().text;
+std::vector<Overlay::TopLine> Overlay::wrapped(std::string text, int size_px,
+                                               const std::function<int(int line)>& room_px) {
+    std::vector<TopLine> lines;
+    for (;;) {
+        const int room = room_px(static_cast<int>(lines.size()));
         std::size_t end = std::string::npos;
-        for (std::size_t space = rest.find(' '); space != std::string::npos;
-             space = rest.find(' ', space + 1)) {
-            if (!fits(rest.substr(0, space))) break;
-            end = space;
-        }
-        if (end == std::string::npos || title_lines_.size() == kMaxTitleLines) return false;
-        title_lines_.back().text = rest.substr(0, end);
-        const auto line = static_cast<int>(title_lines_.size());
-        title_lines_.push_back({rest.substr(end + 1), room_px(title_top_px_ + line * title_line_px())});
+        if (font_.width_px(text, size_px) > room && lines.size() + 1 < kMaxLines)
+            for (std::size_t space = text.find(' ');
+                 space != std::string::npos && font_.width_px(text.substr(0, space), size_px) <= room;
+                 space = text.find(' ', space + 1))
+                end = space;
+        lines.push_back({text.substr(0, end), room});
+        if (end == std::string::npos) return lines;
+        text.erase(0, end + 1);
     }
-    return true;
+}
+
+bool Overlay::wrap_title() {
+    title_lines_ = wrapped(def_.title, title_px(),
+                           [this](int line) { return room_px(title_top_px_ + line * title_line_px()); });
+    return font_.width_px(title_lines_.back().text, title_px()) <= title_lines_.back().room_px;
 }
 
 void Overlay::lay_out_top() {
@@ -212,14 +215,24 @@ void Overlay::lay_out_top() {
 }
 
 void Overlay::draw_text(const OverlayTextDef& text, DrawList& list) {
-    const std::string shown = font_.shortened(text.text, em_px_, list.width - 2 * edge_px_);
-    const int width_px = font_.width_px(shown, em_px_);
-    const int most_px = std::max(edge_px_, list.width - edge_px_ - width_px);
-    const int x_px = std::clamp(rounded(text.at.x * list.width - 0.5 * width_px), edge_px_, most_px);
+    // One whose middle is in the picture stays apart from the plots.
+    const bool is_apart = text.at.x * list.width <= width_ && text.at.y * list.height <= height_;
+    const int end_px = (is_apart ? width_ : list.width) - edge_px_;
+    const auto lines = wrapped(text.text, em_px_, [&](int /*line*/) { return end_px - edge_px_; });
+    const int line_px = rounded(kLine * em_px_);
+    const int more_px = line_px * (static_cast<int>(lines.size()) - 1);
     const int highest_px = rounded(kTallest * em_px_);
-    const int lowest_px = std::max(highest_px, list.height - rounded(kDescent * em_px_));
-    const int y_px = rounded(text.at.y * list.height + 0.5 * kAscent * em_px_);
-    font_.write({x_px, std::clamp(y_px, highest_px, lowest_px), em_px_, color_, shown}, list);
+    const int bottom_px = (is_apart ? height_ : list.height) - rounded(kDescent * em_px_);
+    int y_px = rounded(text.at.y * list.height + 0.5 * kAscent * em_px_) - more_px / 2;
+    y_px = std::clamp(y_px, highest_px, std::max(highest_px, bottom_px - more_px));
+    for (const TopLine& line : lines) {
+        const std::string shown = font_.shortened(line.text, em_px_, line.room_px);
+        const int width_px = font_.width_px(shown, em_px_);
+        const int most_px = std::max(edge_px_, end_px - width_px);
+        const int x_px = std::clamp(rounded(text.at.x * list.width - 0.5 * width_px), edge_px_, most_px);
+        font_.write({x_px, y_px, em_px_, color_, shown}, list);
+        y_px += line_px;
+    }
 }
 
 int Overlay::legend_baseline_px() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -65,6 +66,8 @@ class Overlay {
     [[nodiscard]] std::span<const BodyLabel> labels() const { return labels_; }
     /// Sets the data of the plots, of which those without room are left out; without data there are none.
     void set_plots(std::span<const PlotData> data, std::span<const Color> body_colors);
+    /// The first ones of OverlayDef::plots; the others have no room.
+    [[nodiscard]] std::span<const PlotPanel> plots() const { return plots_; }
     /// Adds the curves of the plot up to a time, and the arrow of the legend.
     void draw_curves(double time_s, DrawList& list) const;
     /// Adds the times of poses, unless the time is switched off: those of later poses first, each where it
@@ -74,7 +77,7 @@ class Overlay {
     void draw(const Caption& caption, double pixels_per_metre, DrawList& list);
 
   private:
-    /// A line at the upper left.
+    /// A line of a title or a text.
     struct TopLine {
         std::string text;
         int room_px = 0;
@@ -91,6 +94,9 @@ class Overlay {
     [[nodiscard]] int title_px() const;
     /// Places title and method next to the legend, or below it.
     void lay_out_top();
+    /// Breaks a text at spaces into a few lines, of which the last one may be too long.
+    [[nodiscard]] std::vector<TopLine> wrapped(std::string text, int size_px,
+                                               const std::function<int(int line)>& room_px);
     /// Breaks the title into lines; false if it has to be shortened.
     [[nodiscard]] bool wrap_title();
     /// Width of a line at the upper left whose upper edge is at `top_px`.
@@ -137,13 +143,13 @@ class Overlay {
     std::string arrow_text_;  ///< "2 m/s"; empty: no legend
     int arrow_text_px_ = 0;
     double arrow_px_ = 0.0;
+    bool is_arrow_cut_ = false;
     Insets panel_;  ///< space taken by the plots
     int width_;     ///< width left by the plots
     int height_;
     int side_px_;  ///< the shorter one of the frame
     int em_px_;
     int edge_px_;          ///< from the edges of the frame to the texts
-    bool is_arrow_cut_ = false;
     int legend_x_px_ = 0;  ///< where the room next to the legend ends
     int title_top_px_ = 0;
     int method_baseline_px_ = 0;

@@ -167,7 +167,8 @@ void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_color
     place_names(font);
     const bool is_drawable = can_be_divided(plot_.x.high - plot_.x.low) &&
                              (data.y.is_log || can_be_divided(plot_.y.high - plot_.y.low));
-    is_shown_ = is_drawable && place_box(is_over_time, least_label_px, font);
+    has_room_ = !is_drawable || place_box(is_over_time, least_label_px, font);
+    is_shown_ = is_drawable && has_room_;
     if (!is_shown_) return;
     for (PixelCurve& curve : curves_) {
         std::vector<PixelPoint> points;  // up to a gap
@@ -190,6 +191,14 @@ void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_color
         }
         if (!points.empty()) add_points(curve.samples.size());
     }
+}
+
+std::vector<std::string> PlotPanel::nameless() const {
+    std::vector<std::string> names;
+    for (const PixelCurve& curve : curves_)
+        if (!curve.name.empty()) names.push_back(curve.name);
+    names.erase(names.begin(), names.begin() + std::ssize(names_));  // names are left out from the end
+    return names;
 }
 
 void PlotPanel::place_names(Font& font) {

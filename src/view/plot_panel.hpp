@@ -71,6 +71,10 @@ class PlotPanel {
     /// Width of the labels of the y axis: panels above each other have the same.
     [[nodiscard]] int label_px() const { return label_px_; }
     [[nodiscard]] const PixelRect& panel() const { return panel_; }
+    /// False if the panel has no room for the plot.
+    [[nodiscard]] bool has_room() const { return has_room_; }
+    /// The names of curves for which the plot has no room.
+    [[nodiscard]] std::vector<std::string> nameless() const;
     /// Adds the curves up to a time, between points by straight lines.
     void draw_curves(double time_s, DrawList& list) const;
     /// Adds the parts that do not change.
@@ -112,6 +116,7 @@ class PlotPanel {
     int edge_px_ = 0;  ///< from the edges of the frame to texts
     Color text_color_;
     std::vector<Color> palette_;  ///< of the theme
+    bool has_room_ = true;
     bool is_shown_ = false;
     PlotBox plot_;
     std::vector<PixelCurve> curves_;

@@ -1,4 +1,5 @@
-#include <gtest/gtest.h>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
@@ -178,6 +179,36 @@ TEST(FilmPlot, NamesManyRopesByTheirLabelsAlone) {
     EXPECT_EQ(data.curves[0].name, "first");
     for (std::size_t i = 1; i < data.curves.size(); ++i) EXPECT_EQ(data.curves[i].name, "") << i;
     EXPECT_NEAR(data.curves[63].points.front().y, 90.0 + 6.3, 1e-9);
+}
+
+TEST(FilmPlot, TellsWhatHasNoRoom) {
+    EXPECT_TRUE(Film(plotted_scene("angle")).left_out().empty());
+    EXPECT_THAT(
+        Film(plotted_scene("energy", {"video.size=[128,128]"})).left_out(),
+        testing::ElementsAre("overlay.plots: \"energy\" has little room in 128x128 pixels and is left "
+                             "out; give a larger size"));
+    const std::vector<std::string> many =
+        Film(plotted_scene("energy", {"overlay.plots=[\"energy\",\"angle\",\"tip\"]"})).left_out();
+    ASSERT_FALSE(many.empty());
+    EXPECT_EQ(many.back(),
+              "overlay.plots: \"tip\" has little room in 256x144 pixels and is left out; give a "
+              "larger size, fewer plots");
+}
+
+TEST(FilmPlot, TellsWhichNamesHaveNoRoom) {
+    std::string toml = "schema = 1\nworld = { duration = 0.1 }\n[overlay]\nplots = [\"angle\"]\n";
+    for (int i = 0; i < 12; ++i)
+        toml += fmt::format("[[rope]]\nlabel = \"pendulum {}\"\nhang = {{ links = 1, length = 1.0 }}\n", i);
+    Scene scene = parse_scene(toml, "named.toml");
+    scene.video.width_px = 256;
+    scene.video.height_px = 144;
+    EXPECT_THAT(Film(scene).left_out(),
+                testing::ElementsAre(testing::MatchesRegex(
+                    "overlay.plots: \"angle\" has little room in 256x144 pixels and names no curve from "
+                    "\"pendulum [0-9]+\" on; give a larger size or shorter labels")));
+    scene.video.width_px = 1920;
+    scene.video.height_px = 1080;
+    EXPECT_TRUE(Film(scene).left_out().empty());
 }
 
 TEST(FilmPlot, SpeaksTheLanguageOfTheSceneButKeepsLabels) {

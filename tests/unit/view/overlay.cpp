@@ -346,14 +346,35 @@ TEST(Overlays, PlaceTextsInTheWholePictureAndNeverCutThem) {
     def.texts = {
         {"middle", {0.5, 0.5}, 0.0, {}}, {"Ücg", {0.99, 0.01}, 0.0, {}}, {much, {0.5, 0.99}, 0.0, {}}};
     const DrawList list = drawn(def, {1.0, {}, {}}, 640, 360);
-    ASSERT_EQ(list.texts.size(), 3U);
+    ASSERT_EQ(list.texts.size(), 5U);
     for (const Text& text : list.texts) {
         const PixelRect ink = Font().ink(text);
         EXPECT_EQ(ink.intersected({0, 0, 640, 360}), ink) << text.utf8;
     }
     const PixelRect middle = Font().ink(list.texts[0]);
     EXPECT_NEAR(0.5 * (middle.x0 + middle.x1), 320.0, 1.0);
-    EXPECT_TRUE(list.texts[2].utf8.ends_with("more…")) << list.texts[2].utf8;
+    EXPECT_TRUE(list.texts[4].utf8.ends_with("more…")) << list.texts[4].utf8;
+}
+
+TEST(Overlays, WrapLongTextsBesideThePlots) {
+    OverlayDef def;
+    def.time = def.scale_bar = false;
+    def.plots = {LivePlot::kEnergy};
+    const std::string text = "the rope is released from rest and swings through its lowest point";
+    for (const auto& [width, height] : {std::pair{640, 360}, {360, 640}}) {
+        def.texts = {{text, {0.5, 0.5}, 0.0, {}}};
+        const PlotLayout room = lay_out_plots(1, width, height);
+        const DrawList list = drawn(def, {1.0, {}, {}}, width, height);
+        ASSERT_EQ(list.texts.size(), 2U) << width;
+        EXPECT_EQ(list.texts[0].utf8 + " " + list.texts[1].utf8, text);
+        EXPECT_GT(Font().ink(list.texts[1]).y0, Font().ink(list.texts[0]).y1);
+        for (const Text& line : list.texts) {
+            EXPECT_LT(Font().ink(line).x1, room.width_px) << width;
+            EXPECT_LT(Font().ink(line).y1, room.height_px) << width;
+        }
+        def.texts[0].at = {0.9, 0.9};  // over the plot on purpose
+        EXPECT_LT(drawn(def, {1.0, {}, {}}, 2 * width, 2 * height).texts.size(), 3U);
+    }
 }
 
 TEST(Labels, AreShortenedAndDoNotOverprint) {
