@@ -43,29 +43,38 @@ struct FigureOptions {
     // Of the file of `--from`.
     std::vector<double> film_times_of_origin;
     int columns_of_origin = 0;
+    bool blurs_as_video = false;  ///< it is a frame
+    int panel_columns = 1;        ///< of the scenes that load() returned
 
     /// `output_help` says what the output may be.
     void add_to(CLI::App& command, const std::string& output_help);
-    /// The scene, with the picture size that `--width-mm` asks for.
-    [[nodiscard]] Scene load(const Console& console) const;
+    /// The scenes of the panels, with the picture size that `--width-mm` asks for.
+    [[nodiscard]] std::vector<Scene> load(const Console& console);
+    /// The requested times, up to the end of the longest of the scenes.
+    [[nodiscard]] std::vector<RequestedTime> list(const std::vector<Scene>& scenes) const;
+    /// The figure of one scene at times of which some may be after its end.
+    [[nodiscard]] FigureDef figure_of(const Scene& scene, const std::vector<RequestedTime>& some) const;
+    [[nodiscard]] double shutter_of(const Scene& one) const {
+        return blurs_as_video ? one.video.shutter : shutter;
+    }
     /// Throws CLI::RequiredError if there is no scene, or no moment that is not that of `--from`.
     void require() const;
     /// Takes the options that the command line does not give from the file of `--from`, made by `command`.
     void take_origin(const Console& console, std::string_view command);
     /// The times that the film records in addition to those of frames.
     [[nodiscard]] std::vector<double> film_times(const std::vector<RequestedTime>& some) const;
-    [[nodiscard]] Film film_of(const Console& console, const Scene& scene,
-                               const std::vector<RequestedTime>& some) const;
-    /// The text chunks and the resolution of the file of a figure. `scene` has the size of the whole picture;
-    /// `origin` gets its times, of which the film also has `all_s`.
-    [[nodiscard]] PngInfo png_info(const Scene& scene, const std::vector<RequestedTime>& some,
+    [[nodiscard]] std::vector<Film> films_of(const Console& console, const std::vector<Scene>& scenes,
+                                             const std::vector<RequestedTime>& some) const;
+    /// The text chunks and the resolution of the file of a figure. `scenes` have the sizes of whole panels;
+    /// `origin` gets its times, of which the films also have `all_s`.
+    [[nodiscard]] PngInfo png_info(const std::vector<Scene>& scenes, const std::vector<RequestedTime>& some,
                                    PictureOrigin origin, const std::vector<double>& all_s) const;
-    /// Makes the only picture of a command, and reports it.
-    ExitCode write_one(const Console& console, const Scene& scene, const std::vector<RequestedTime>& some,
-                       const FigureDef& def) const;
+    /// Makes the only picture of a command, and reports it. `defs`: the figure of each scene.
+    ExitCode write_one(const Console& console, const std::vector<Scene>& scenes,
+                       const std::vector<RequestedTime>& some, const std::vector<FigureDef>& defs) const;
 
   private:
-    mutable std::optional<Provenance> made_;  ///< of the scene that png_info() is given
+    mutable std::optional<Provenance> made_;  ///< of the scenes that png_info() is given
 };
 
 void FigureOptions::add_to(CLI::App& command, const std::string& output_help) {
@@ -110,41 +119,72 @@ void FigureOptions::take_origin(const Console& console, std::string_view command
     }
     film_times_of_origin = picture->film_times_s;
     columns_of_origin = picture->columns;
-    if (shutter == 0.0) shutter = is_frame ? load(console).video.shutter : picture->shutter;
+    blurs_as_video = is_frame && shutter == 0.0;
+    if (shutter == 0.0) shutter = picture->shutter;
     if (!pixels_per_inch && !width_mm) pixels_per_inch = picture->pixels_per_inch;
 }
 
-Scene FigureOptions::load(const Console& console) const {
-    Scene loaded = scene.load(console);
-    if (!width_mm) return loaded;
-    VideoDef& video = loaded.video;
-    const double width_px = std::round(*width_mm / kMmPerInch * pixels_per_inch.value_or(kPrintPpi));
-    const double height_px = std::round(width_px * video.height_px / video.width_px);
-    const bool is_sane = std::max(width_px, height_px) <= kMaxSidePx;
-    if (!is_sane || !is_picture_size(std::lround(width_px), std::lround(height_px))) {
-        throw_usage(
-            "--width-mm {} at {} pixels per inch is {}x{} pixels, not 1 .. {} per side and {} in all; choose "
-            "another width or --ppi",
-            *width_mm, pixels_per_inch.value_or(kPrintPpi), width_px, height_px, kMaxSidePx, kMaxPicturePx);
-    }
-    video.width_px = static_cast<int>(width_px);
-    video.height_px = static_cast<int>(height_px);
-    return loaded;
+std::vector<Scene> FigureOptions::load(const Console& console) {
+    panel_columns = scene.columns(console);
+    return scene.load_panels(console, [this](VideoDef& whole) {
+        if (!width_mm) return false;
+        const double width_px = std::round(*width_mm / kMmPerInch * pixels_per_inch.value_or(kPrintPpi));
+        const double height_px = std::round(width_px * whole.height_px / whole.width_px);
+        const bool is_sane = std::max(width_px, height_px) <= kMaxSidePx;
+        if (!is_sane || !is_picture_size(std::lround(width_px), std::lround(height_px))) {
+            throw_usage(
+                "--width-mm {} at {} pixels per inch is {}x{} pixels, not 1 .. {} per side and {} in all; "
+                "choose another width or --ppi",
+                *width_mm, pixels_per_inch.value_or(kPrintPpi), width_px, height_px, kMaxSidePx,
+                kMaxPicturePx);
+        }
+        whole.width_px = static_cast<int>(width_px);
+        whole.height_px = static_cast<int>(height_px);
+        return true;
+    });
 }
 
-Film FigureOptions::film_of(const Console& console, const Scene& loaded,
-                            const std::vector<RequestedTime>& some) const {
-    FilmDef def;
-    def.on_progress = show_progress(console, "simulate");
-    for (const RequestedTime& time : some) def.stills_s.push_back(time.time_s);
-    for (const double time_s : film_times_of_origin)
-        if (time_s <= loaded.world.duration_s) def.stills_s.push_back(time_s);
-    gl.apply_to(def);
-    Film film(loaded, def);
-    report_plan(console, film);
-    console.detail(fmt::format("{}: {}", film.scene().name, system_text(film.system())));
-    static_cast<void>(film.camera());
-    return film;
+std::int64_t frame_count_of(const Scene& scene) {
+    return scene.video.scene_rate().frame_count(scene.world.duration_s);
+}
+
+std::vector<RequestedTime> FigureOptions::list(const std::vector<Scene>& scenes) const {
+    const auto is_shorter = [this](const Scene& a, const Scene& b) {
+        return times.frames.empty() ? a.world.duration_s < b.world.duration_s
+                                    : frame_count_of(a) < frame_count_of(b);
+    };
+    std::vector<RequestedTime> all = times.list(*std::max_element(scenes.begin(), scenes.end(), is_shorter));
+    for (RequestedTime& time : all)  // of the first scene, as in a video
+        if (time.frame) time.time_s = scenes.front().video.scene_rate().time_s(*time.frame);
+    return all;
+}
+
+FigureDef FigureOptions::figure_of(const Scene& one, const std::vector<RequestedTime>& some) const {
+    FigureDef def;
+    for (const RequestedTime& time : some)
+        def.times_s.push_back(
+            time.frame ? one.video.scene_rate().time_s(std::min(*time.frame, frame_count_of(one) - 1))
+                       : std::min(time.time_s, one.world.duration_s));
+    return def;
+}
+
+std::vector<Film> FigureOptions::films_of(const Console& console, const std::vector<Scene>& scenes,
+                                          const std::vector<RequestedTime>& some) const {
+    std::vector<Film> films;
+    for (const Scene& one : scenes) {
+        FilmDef def;
+        def.on_progress = show_progress(console, "simulate");
+        def.stills_s = figure_of(one, some).times_s;
+        for (const double time_s : film_times_of_origin)
+            if (time_s <= one.world.duration_s) def.stills_s.push_back(time_s);
+        def.motion_budget_bytes /= scenes.size();
+        gl.apply_to(def);
+        Film& film = films.emplace_back(one, def);
+        report_plan(console, film);
+        console.detail(fmt::format("{}: {}", film.scene().name, system_text(film.system())));
+        warn_of_room(console, film);
+    }
+    return films;
 }
 
 std::vector<double> FigureOptions::film_times(const std::vector<RequestedTime>& some) const {
@@ -156,7 +196,7 @@ std::vector<double> FigureOptions::film_times(const std::vector<RequestedTime>& 
     return times_s;
 }
 
-PngInfo FigureOptions::png_info(const Scene& loaded, const std::vector<RequestedTime>& some,
+PngInfo FigureOptions::png_info(const std::vector<Scene>& scenes, const std::vector<RequestedTime>& some,
                                 PictureOrigin origin, const std::vector<double>& all_s) const {
     std::string times_text;
     std::string frames;
@@ -164,8 +204,8 @@ PngInfo FigureOptions::png_info(const Scene& loaded, const std::vector<Requested
         times_text += fmt::format("{}{}", times_text.empty() ? "" : ", ", time.time_s);
         if (time.frame) frames += fmt::format("{}{}", frames.empty() ? "" : ", ", *time.frame);
     }
-    const double ppi =
-        width_mm ? loaded.video.width_px * kMmPerInch / *width_mm : pixels_per_inch.value_or(kScreenPpi);
+    const double ppi = width_mm ? panels_video(scenes, panel_columns).width_px * kMmPerInch / *width_mm
+                                : pixels_per_inch.value_or(kScreenPpi);
     for (const RequestedTime& time : some)
         origin.times.push_back({time.frame, time.frame ? 0.0 : time.time_s});
     const bool are_origins = std::ranges::all_of(all_s, [&](double time_s) {
@@ -174,50 +214,57 @@ PngInfo FigureOptions::png_info(const Scene& loaded, const std::vector<Requested
     });
     if (!are_origins) origin.film_times_s = all_s;
     if (ppi != kScreenPpi) origin.pixels_per_inch = ppi;
-    if (!made_) made_ = provenance_of(loaded);
+    if (!made_) made_ = provenance_of(scenes, panel_columns);
     Provenance made = *made_;
     // A still of a frame has the bytes of the frame, whose number is elsewhere in the record.
-    const bool is_frame = origin.command == "still" && origin.times.front().frame &&
-                          origin.shutter == loaded.video.shutter && origin.film_times_s.empty() &&
-                          !origin.pixels_per_inch;
+    const bool blurs_so = std::all_of(scenes.begin(), scenes.end(), [this](const Scene& one) {
+        return shutter_of(one) == one.video.shutter;
+    });
+    const bool is_frame = origin.command == "still" && origin.times.front().frame && blurs_so &&
+                          origin.film_times_s.empty() && !origin.pixels_per_inch;
     if (!is_frame) made.picture = std::move(origin);
-    PngInfo info = picture_info(loaded.name, times_text, frames, provenance_text(std::move(made)));
+    const std::string name = scenes.size() == 1 ? scenes.front().name : made.name;
+    PngInfo info = picture_info(name, times_text, frames, provenance_text(std::move(made)));
     info.pixels_per_inch = ppi;
     return info;
 }
 
-ExitCode FigureOptions::write_one(const Console& console, const Scene& loaded,
-                                  const std::vector<RequestedTime>& some, const FigureDef& def) const {
+ExitCode FigureOptions::write_one(const Console& console, const std::vector<Scene>& scenes,
+                                  const std::vector<RequestedTime>& some,
+                                  const std::vector<FigureDef>& defs) const {
     if (!is_figure_path(output))
         throw_usage("-o {}: is one picture, .png, .svg or .pdf; give such a name", output);
     check_output(output, scene.input(), force);
-    const bool is_sheet = def.columns > 0;
-    const int width_px = is_sheet ? def.width_px : loaded.video.width_px;
-    const int height_px = is_sheet ? def.height_px : loaded.video.height_px;
-    Scene whole = loaded;
-    whole.video.width_px = width_px;
-    whole.video.height_px = height_px;
-    const PictureOrigin origin{.command = is_sheet ? "sheet" : "strobe", .columns = def.columns};
-    Film film = film_of(console, loaded, some);
+    const bool is_sheet = defs.front().columns > 0;
+    std::vector<Scene> wholes = scenes;
+    for (std::size_t i = 0; is_sheet && i < scenes.size(); ++i) {
+        wholes[i].video.width_px = defs[i].width_px;
+        wholes[i].video.height_px = defs[i].height_px;
+    }
+    const VideoDef whole = panels_video(wholes, panel_columns);
+    const PictureOrigin origin{.command = is_sheet ? "sheet" : "strobe", .columns = defs.front().columns};
+    std::vector<Film> films = films_of(console, scenes, some);
     EmptyPictures empties = empty;
     if (!dry_run) {
-        if (output.ends_with(".png")) report_gl(console, film.gl());
-        const auto empty_s = write_figure(output, film, def, png_info(whole, some, origin, film_times(some)),
-                                          {.force = force});
-        empties.count = static_cast<std::int64_t>(empty_s.size());
+        if (output.ends_with(".png")) report_gl(console, films.front().gl());
+        const auto empty_s = write_figure(output, films, panel_columns, defs,
+                                          png_info(wholes, some, origin, film_times(some)), {.force = force});
+        empties.count = std::min(std::ssize(empty_s), is_sheet ? std::ssize(some) : 1);
         if (!empty_s.empty()) empties.first_s = empty_s.front();
-        warn_of_branch(console, film);
+        for (const Film& film : films) warn_of_branch(console, film);
         console.result(output);
     } else {
         console.info(fmt::format("would write {}", output));
     }
-    nlohmann::json json = film_json(film);
-    json["outputs"] = {{{"path", output}, {"times_s", def.times_s}}};
-    json["width"] = width_px;
-    json["height"] = height_px;
+    nlohmann::json json = films_json(films);
+    std::vector<double> times_s;
+    for (const RequestedTime& time : some) times_s.push_back(time.time_s);
+    json["outputs"] = {{{"path", output}, {"times_s", times_s}}};
+    json["width"] = whole.width_px;
+    json["height"] = whole.height_px;
     json["empty"] = empties.count;
     console.report(json);
-    return empties.report(console, is_sheet ? static_cast<std::int64_t>(some.size()) : 1, loaded.camera);
+    return empties.report(console, is_sheet ? std::ssize(some) : 1, scenes.front().camera);
 }
 
 struct Still : RequestedTime {
@@ -245,16 +292,20 @@ bool is_picture(const std::string& output) {
 
 /// Its name in a folder: names sort by time and have one dot, so that no program takes a part of the time for
 /// the ending.
-std::string name_of(const RequestedTime& time, const Scene& scene) {
-    std::string name = time.frame ? fmt::format("{}_f{:06}", scene.name, *time.frame)
-                                  : fmt::format("{}_t{:011.6f}", scene.name, time.time_s);
+std::string name_of(const RequestedTime& time, const std::string& scene) {
+    std::string name = time.frame ? fmt::format("{}_f{:06}", scene, *time.frame)
+                                  : fmt::format("{}_t{:011.6f}", scene, time.time_s);
     std::ranges::replace(name, '.', '_');
     return name + ".png";
 }
 
-std::vector<Still> list_stills(const std::vector<RequestedTime>& times, const Scene& scene) {
+std::vector<Still> list_stills(const std::vector<RequestedTime>& times, const std::vector<Scene>& scenes,
+                               int columns) {
+    std::string name = scenes.front().name;
+    if (scenes.size() > 1)
+        name += fmt::format("_{}x{}", columns, scenes.size() / static_cast<std::size_t>(columns));
     std::vector<Still> stills;
-    for (const RequestedTime& time : times) stills.push_back({time, name_of(time, scene)});
+    for (const RequestedTime& time : times) stills.push_back({time, name_of(time, name)});
     const auto same = std::ranges::adjacent_find(stills, {}, &Still::path);
     if (same != stills.end()) throw_usage("two stills would both be {}; ask for each time once", same->path);
     return stills;
@@ -281,19 +332,22 @@ void set_paths(const FigureOptions& options, std::vector<Still>& stills) {
 
 /// Draws and writes the stills, and counts the empty ones. If interrupted, the message says how many were
 /// written.
-void write_each(const std::vector<Still>& stills, const FigureOptions& options, Film& film,
-                EmptyPictures& empty) {
+void write_each(const std::vector<Still>& stills, const std::vector<Scene>& scenes,
+                const FigureOptions& options, std::vector<Film>& films, EmptyPictures& empty) {
     std::size_t written = 0;
     const std::vector<double> stills_s = options.film_times({stills.begin(), stills.end()});
     try {
         for (const Still& still : stills) {
             check_cancelled();
-            const FigureDef def{.times_s = {still.time_s}, .shutter = options.shutter};
+            std::vector<FigureDef> defs;
+            for (const Scene& scene : scenes) {
+                defs.push_back(options.figure_of(scene, {still}));
+                defs.back().shutter = options.shutter_of(scene);
+            }
+            const PictureOrigin origin{.command = "still", .shutter = defs.front().shutter};
             const auto empty_s =
-                write_figure(still.path, film, def,
-                             options.png_info(film.scene(), {still},
-                                              {.command = "still", .shutter = options.shutter}, stills_s),
-                             {.force = options.force});
+                write_figure(still.path, films, options.panel_columns, defs,
+                             options.png_info(scenes, {still}, origin, stills_s), {.force = options.force});
             ++written;
             if (!empty_s.empty() && empty.count++ == 0) empty.first_s = still.time_s;
         }
@@ -306,40 +360,44 @@ void write_each(const std::vector<Still>& stills, const FigureOptions& options, 
 
 ExitCode write_stills(const Console& console, FigureOptions options) {
     options.take_origin(console, "still");
-    const Scene scene = options.load(console);
-    const std::vector<RequestedTime> times = options.times.list(scene);
-    std::vector<Still> stills = list_stills(times, scene);
+    const std::vector<Scene> scenes = options.load(console);
+    const VideoDef whole = panels_video(scenes, options.panel_columns);
+    const std::vector<RequestedTime> times = options.list(scenes);
+    std::vector<Still> stills = list_stills(times, scenes, options.panel_columns);
     set_paths(options, stills);
-    Film film = options.film_of(console, scene, times);
+    std::vector<Film> films = options.films_of(console, scenes, times);
     EmptyPictures empty = options.empty;
     if (!options.dry_run) {
-        if (stills.front().path.ends_with(".png")) report_gl(console, film.gl());
-        write_each(stills, options, film, empty);
-        warn_of_branch(console, film);
+        if (stills.front().path.ends_with(".png")) report_gl(console, films.front().gl());
+        write_each(stills, scenes, options, films, empty);
+        for (const Film& film : films) warn_of_branch(console, film);
     }
-    nlohmann::json json = film_json(film);
+    nlohmann::json json = films_json(films);
     json["outputs"] = nlohmann::json::array();
     for (const Still& still : stills) {
         if (options.dry_run) console.info(fmt::format("would write {}", still.path));
         if (!options.dry_run) console.result(still.path);
         json["outputs"].push_back({{"path", still.path}, {"time_s", still.time_s}});
     }
-    json["width"] = film.scene().video.width_px;
-    json["height"] = film.scene().video.height_px;
+    json["width"] = whole.width_px;
+    json["height"] = whole.height_px;
     json["empty"] = empty.count;
     console.report(json);
-    return empty.report(console, static_cast<std::int64_t>(stills.size()), scene.camera);
+    return empty.report(console, std::ssize(stills), scenes.front().camera);
 }
 
 ExitCode write_strobe(const Console& console, FigureOptions options) {
     options.take_origin(console, "strobe");
-    const Scene scene = options.load(console);
-    std::vector<RequestedTime> times = options.times.list(scene);
+    const std::vector<Scene> scenes = options.load(console);
+    std::vector<RequestedTime> times = options.list(scenes);
     const auto is_same = [](const RequestedTime& a, const RequestedTime& b) { return a.time_s == b.time_s; };
-    times.erase(std::unique(times.begin(), times.end(), is_same), times.end());  // one pose, one label
-    FigureDef def;
-    for (const RequestedTime& time : times) def.times_s.push_back(time.time_s);
-    return options.write_one(console, scene, times, def);
+    times.erase(std::unique(times.begin(), times.end(), is_same), times.end());
+    std::vector<FigureDef> defs;
+    for (const Scene& scene : scenes) {
+        std::vector<double>& times_s = defs.emplace_back(options.figure_of(scene, times)).times_s;
+        times_s.erase(std::unique(times_s.begin(), times_s.end()), times_s.end());  // one pose, one label
+    }
+    return options.write_one(console, scenes, times, defs);
 }
 
 struct SheetOptions : FigureOptions {
@@ -349,12 +407,14 @@ struct SheetOptions : FigureOptions {
 ExitCode write_sheet(const Console& console, SheetOptions options) {
     options.take_origin(console, "sheet");
     if (options.columns == 0) options.columns = options.columns_of_origin;
-    Scene scene = options.load(console);
-    const std::vector<RequestedTime> times = options.times.list(scene);
-    std::vector<double> times_s;
-    for (const RequestedTime& time : times) times_s.push_back(time.time_s);
-    const FigureDef def = contact_sheet(scene, times_s, options.columns);
-    return options.write_one(console, scene, times, def);
+    std::vector<Scene> scenes = options.load(console);
+    const std::vector<RequestedTime> times = options.list(scenes);
+    std::vector<FigureDef> defs;
+    for (Scene& scene : scenes) {
+        defs.push_back(contact_sheet(scene, options.figure_of(scene, times).times_s, options.columns));
+        options.columns = defs.front().columns;
+    }
+    return options.write_one(console, scenes, times, defs);
 }
 
 }  // namespace

@@ -31,8 +31,6 @@ namespace {
 
 struct RenderOptions {
     SceneOptions scene;
-    std::vector<std::string> others;  ///< scenes of the panels after the first
-    std::string panels;
     GlOptions gl;
     EmptyPictures empty;
     std::string output;
@@ -92,58 +90,6 @@ std::string words_of_interruption(const RenderOptions& options, std::int64_t fir
     const bool is_resumable = !is_standard_output(options.output) && rendered.frames < count;
     return is_resumable ? fmt::format("{} (--frames {}:{} draws the others)", done, next, first + count)
                         : done;
-}
-
-/// The columns of the grid that `--panels` gives, or that of the file of `--from`; 1 without panels.
-int columns_of(const Console& console, const RenderOptions& options) {
-    if (options.scene.is_from()) return std::max(1, options.scene.provenance(console).columns);
-    const std::size_t scenes = options.others.size() + 1;
-    int columns = 1;
-    int rows = 1;
-    const bool is_read =
-        options.panels.empty() || (std::sscanf(options.panels.c_str(), "%4dx%4d", &columns, &rows) == 2 &&
-                                   fmt::format("{}x{}", columns, rows) == options.panels);
-    if (is_read && columns > 0 && rows > 0 &&
-        static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) == scenes)
-        return columns;
-    const std::string count = counted(std::ssize(options.others) + 1, "scene");
-    throw Error(ExitCode::kUsage,
-                options.panels.empty()
-                    ? fmt::format("{} need a grid COLUMNSxROWS; give e.g. --panels {}x1", count, scenes)
-                    : fmt::format("--panels {}: is no grid COLUMNSxROWS of {}; give e.g. --panels {}x1",
-                                  options.panels, count, scenes));
-}
-
-/// The scenes, in the sizes of their panels.
-std::vector<Scene> load_scenes(const Console& console, const RenderOptions& options, int columns) {
-    std::vector<Scene> scenes = options.scene.load_panels(console, options.others);
-    VideoDef whole = scenes.front().video;
-    if (!options.scene.gives_size()) {
-        if (!options.scene.is_from())  // all get the size of the first one
-            for (Scene& scene : scenes) {
-                scene.video.width_px = whole.width_px;
-                scene.video.height_px = whole.height_px;
-            }
-        whole = panels_video(scenes, columns);
-        if (!options.pad) return scenes;
-    }
-    if (options.pad) {
-        whole.width_px += whole.width_px % 2;
-        whole.height_px += whole.height_px % 2;
-    }
-    lay_out_panels(scenes, columns, whole.width_px, whole.height_px);
-    return scenes;
-}
-
-/// That of the film, or of the film of each panel.
-nlohmann::json films_json(std::vector<Film>& films) {
-    if (films.size() == 1) return film_json(films.front());
-    nlohmann::json json{{"schema", 1}, {"panels", nlohmann::json::array()}};
-    for (Film& film : films) {
-        json["panels"].push_back(film_json(film));
-        json["panels"].back()["scene"] = film.scene().name;
-    }
-    return json;
 }
 
 nlohmann::json report(std::vector<Film>& films, const VideoDef& video, const RenderOptions& options,
@@ -273,8 +219,13 @@ std::vector<Film> make_films(const Console& console, const std::vector<Scene>& s
 
 ExitCode render(const Console& console, const RenderOptions& options) {
     const double start_s = now_s();
-    const int columns = columns_of(console, options);
-    const std::vector<Scene> scenes = load_scenes(console, options, columns);
+    const int columns = options.scene.columns(console);
+    const std::vector<Scene> scenes = options.scene.load_panels(console, [&](VideoDef& whole) {
+        if (!options.pad) return false;
+        whole.width_px += whole.width_px % 2;
+        whole.height_px += whole.height_px % 2;
+        return true;
+    });
     RenderDef def;
     def.force = options.force;
     def.resume = options.resume;
@@ -337,12 +288,6 @@ void add_render(CLI::App& app, Action& action) {
     auto [command, options] = add_command(app, action, "render", "turn a scene into a video", render);
     options.scene.add_to(command);
     options.scene.add_from(command);
-    command.add_option("SCENES", options.others, "scenes of the other panels");
-    command
-        .add_option("--panels", options.panels,
-                    "show the scenes in a grid, row by row, in one film, whose size is --size")
-        ->type_name("COLUMNSxROWS")
-        ->excludes("--from");
     command.add_option("-o,--output", options.output, "the ending chooses the format: " + endings_text())
         ->required();
     options.scene.add_size(command);

@@ -296,5 +296,11 @@ struct FigureDef {
 std::vector<double> write_figure(const std::string& path, Film& film, const FigureDef& def,
                                  const PngInfo& info = {}, const OutputOptions& options = {});
 
+/// The same of films side by side (see lay_out_panels()), each as a figure of its own. Returns the times
+/// at which one is empty. Throws kUsage if their sizes form no grid.
+std::vector<double> write_figure(const std::string& path, std::span<Film> panels, int columns,
+                                 std::span<const FigureDef> defs, const PngInfo& info = {},
+                                 const OutputOptions& options = {});
+
 }  // namespace corda
 #pragma GCC visibility pop

@@ -238,9 +238,8 @@ std::string names_of(const std::vector<Provenance>& parts, const char* separator
 /// Refuses a file without a scene, and one with several.
 void check_scene(const Provenance& provenance, const std::string& path) {
     if (!provenance.parts.empty())
-        throw_usage("'{}' has several scenes ({}); {}", path, printable(names_of(provenance.parts, ", ")),
-                    provenance.columns > 0 ? "`corda render --from` repeats it"
-                                           : "give one of the videos that it was joined of");
+        throw_usage("'{}' has several scenes ({}); give one of the videos that it was joined of", path,
+                    printable(names_of(provenance.parts, ", ")));
     if (!provenance.scene.empty()) return;
     fail_at(path,
             fmt::format("does not carry its scene, because {}",

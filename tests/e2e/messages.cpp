@@ -44,6 +44,20 @@ TEST_F(Messages, WarnOfTextsThatNoFrameShows) {
     EXPECT_THAT(told("0.9"), Not(HasSubstr("overlay.texts")));
 }
 
+TEST_F(Messages, WarnOncePerFilmOfPlotsWithoutRoom) {
+    for (const std::vector<std::string>& command :
+         std::vector<std::vector<std::string>>{{"still", scene_, "--at", "0,0.1", "-o", folder_.file("a")},
+                                               {"render", scene_, "-o", folder_.file("a.mp4")}}) {
+        std::vector<std::string> words = command;
+        words.insert(words.end(), {"--set", "overlay.plots=['energy']"});
+        const std::string told = run_corda(words).err;
+        const std::string warning =
+            "scene.toml: overlay.plots: \"energy\" has little room in 64x64 pixels and is left out";
+        EXPECT_THAT(told, HasSubstr(warning));
+        EXPECT_EQ(told.find(warning), told.rfind(warning));
+    }
+}
+
 TEST_F(Messages, NameTheValuesOfAnOption) {
     for (const auto& [command, message] :
          {std::pair(std::vector<std::string>{"simulate", scene_, "--decimal", "komma"},

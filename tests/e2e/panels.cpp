@@ -1,14 +1,18 @@
-// `corda render --panels` and `corda join`: several scenes in one film.
+// `--panels` and `corda join`: several scenes in one film or picture.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "corda/core/image.hpp"
+#include "corda/media/defs.hpp"
 #include "support/command.hpp"
+#include "support/image_matchers.hpp"
 
 namespace corda {
 namespace {
@@ -133,9 +137,70 @@ TEST_F(SeveralScenes, WithoutAGridOrOneClockAreRefused) {
                                             "[video]\nsize = [64, 48]\nfps = 20\n");
     expect_failure({"render", a, other, "--panels", "2x1", "-o", out}, 2,
                    "give all scenes the same video.fps (--fps)");
+    for (const std::string command : {"still", "strobe", "sheet"}) {
+        expect_failure({command, a, other, "--at", "0", "--panels", "2x1", "-o", file("a.png")}, 2,
+                       "give all scenes the same video.fps (--fps)");
+        expect_failure({command, a, a, "--at", "0", "-o", file("a.png")}, 2, "2 scenes need a grid");
+        expect_failure({command, a, a, "--at", "0", "--panels", "1x2", "--size", "2x2", "-o", file("a.png")},
+                       2, "1x2 panels (--panels) have no room in 2x2 pixels (--size)");
+    }
     run({"render", a, other, "--panels", "2x1", "--fps", "20", "--duration", "0.1", "-o", out});
-    expect_failure({"still", "--from", out, "--at", "0", "-o", file("a.png")}, 2,
-                   "has several scenes (a, b); `corda render --from`");
+}
+
+/// A part of a picture that is as wide as it.
+Image rows_of(const Image& whole, int y0, int height) {
+    Image part(whole.width(), height);
+    std::copy_n(whole.pixel(0, y0), part.size_bytes(), part.data());
+    return part;
+}
+
+TEST_F(SeveralScenes, InPanelsOfPicturesLookAsByThemselves) {
+    const std::string a = scene("a", "1", "speed = \"1/2\"\n");
+    const std::string b = scene("b", "0.5", "[style]\ntheme = \"paper\"\ntrail_s = 0.2\n");
+    const std::string both = file("both.png");
+    const auto expect_panels = [&](const std::string& command, const std::string& times,
+                                   const std::string& times_of_b, const std::string& size) {
+        const std::string option = times.find('.') == std::string::npos ? "--frame" : "--at";
+        run({command, a, b, option, times, "--panels", "1x2", "--size", "160x360", "--force", "-o", both});
+        run({command, a, option, times, "--size", size, "--force", "-o", file("a.png")});
+        run({command, b, option, times_of_b, "--size", size, "--force", "-o", file("b.png")});
+        const Image whole = read_png(both);
+        ASSERT_EQ(whole.height(), 360);
+        EXPECT_TRUE(test::equal_images(rows_of(whole, 0, 180), read_png(file("a.png")))) << command;
+        EXPECT_TRUE(test::equal_images(rows_of(whole, 180, 180), read_png(file("b.png")))) << command;
+        run({command, "--from", both, "--force", "-o", file("again.png")});
+        expect_same("again.png", "both.png");
+    };
+    expect_panels("still", "0.25", "0.25", "160x180");
+    expect_panels("still", "0.75", "0.5", "160x180");  // after the end of b
+    expect_panels("still", "7", "4", "160x180");
+    expect_panels("strobe", "0.1,0.3,0.8,0.9", "0.1,0.3,0.5", "160x180");
+    expect_panels("sheet", "0.1,0.3", "0.1,0.3", "160x180");
+}
+
+TEST_F(SeveralScenes, InPanelsOfStillsAreTheFramesOfTheFilm) {
+    const std::string a = scene("a", "0.6", "shutter = 0.5\n");
+    const std::string b = scene("b", "0.4", "shutter = 0.25\nspeed = 2\n");
+    run({"render", a, b, "--panels", "2x1", "--frames", "4:5", "-o", file("frame_%d.png")});
+    run({"still", "--from", file("frame_4.png"), "-o", file("again.png")});
+    expect_same("again.png", "frame_4.png");
+    run({"render", a, b, "--panels", "2x1", "-o", file("c.mkv")});
+    run({"still", "--from", file("c.mkv"), "--frame", "0,4", "-o", file("stills")});
+    run({"still", a, b, "--panels", "2x1", "--frame", "4", "-o", file("sharp.png")});
+    expect_same("stills/a_2x1_f000004.png", "sharp.png");
+}
+
+TEST_F(SeveralScenes, InPanelsOfPicturesAreVectorsToo) {
+    const std::string a = scene("a", "1");
+    const auto result = run_corda({"still", a, a, a, a, "--panels", "2x2", "--at", "0", "--width-mm", "100",
+                                   "--ppi", "254", "--json", "-o", file("a.svg")});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const auto report = nlohmann::json::parse(result.out);
+    EXPECT_EQ(report["width"], 1000);
+    EXPECT_EQ(report["height"], 750);
+    EXPECT_EQ(report["panels"].size(), 4U);
+    EXPECT_THAT(read_file(file("a.svg")), HasSubstr("viewBox=\"0 0 1000 750\""));
+    run({"still", a, a, "--panels", "2x1", "--at", "0", "-o", file("a.pdf")});
 }
 
 TEST_F(SeveralScenes, AreJoinedOneAfterTheOther) {

@@ -189,7 +189,7 @@ TEST_F(ProvenanceOfFiles, DamagedProvenanceIsRefused) {
         bad.replace(bad.find(from), from.size(), to);
         EXPECT_EQ(code_of(bad), 2) << bad;
     }
-    // Those of panels, which `render` alone lays out.
+    // Those of panels.
     const std::string panel = R"({"corda":"0.1.0","name":"a","scene":"schema = 1"})";
     std::string many = panel;
     for (int i = 0; i < 64; ++i) many += "," + panel;
