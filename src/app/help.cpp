@@ -88,7 +88,7 @@ std::string text_about(const CLI::App& app, const std::string& topic) {
     if (topic.empty()) return help_of(app);
     if (topic == kSceneTopic) return scene::keys_text();
     if (topic == kManualTopic) return manual_page(app) + "\n";
-    const std::string keys = scene::keys_text(topic);
+    std::string keys = scene::keys_text(topic);
     if (const CLI::App* const command = find_command(app, topic))
         return help_of(*command) + (keys.empty() ? "" : "\n" + keys);
     if (!keys.empty()) return keys;

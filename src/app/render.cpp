@@ -217,6 +217,16 @@ std::vector<Film> make_films(const Console& console, const std::vector<Scene>& s
     return films;
 }
 
+RenderDef render_def(const Console& console, const RenderOptions& options) {
+    RenderDef def;
+    def.force = options.force;
+    def.resume = options.resume;
+    def.verify_all = options.verify == "full";
+    if (!options.shard.empty()) def.shard = parse_shard(options.shard);
+    parse_range(range_of(console, options), def);
+    return def;
+}
+
 ExitCode render(const Console& console, const RenderOptions& options) {
     const double start_s = now_s();
     const int columns = options.scene.columns(console);
@@ -226,12 +236,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
         whole.height_px += whole.height_px % 2;
         return true;
     });
-    RenderDef def;
-    def.force = options.force;
-    def.resume = options.resume;
-    def.verify_all = options.verify == "full";
-    if (!options.shard.empty()) def.shard = parse_shard(options.shard);
-    parse_range(range_of(console, options), def);
+    const RenderDef def = render_def(console, options);
     check_standard_output(console, options.output);
     const CheckedOutput output = check_render(scenes, columns, options.output, def, options.scene.input());
     const VideoDef& video = output.video().def;

@@ -170,27 +170,29 @@ void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_color
     has_room_ = !is_drawable || place_box(is_over_time, least_label_px, font);
     is_shown_ = is_drawable && has_room_;
     if (!is_shown_) return;
-    for (PixelCurve& curve : curves_) {
-        std::vector<PixelPoint> points;  // up to a gap
-        const auto add_points = [&](std::size_t end) {
-            for (const std::size_t k : visible_points(points)) {
-                curve.points.push_back(points[k]);
-                curve.times_s.push_back(curve.samples[end - points.size() + k].time_s);
-            }
-            points.clear();
-        };
-        for (std::size_t k = 0; k < curve.samples.size(); ++k) {
-            const CurvePoint& point = curve.samples[k];
-            const PixelPoint at{plot_.x.px(point.x), plot_.y.px(point.y)};
-            if (is_gap(at) && !points.empty()) {
-                add_points(k);
-                curve.points.push_back(at);
-                curve.times_s.push_back(point.time_s);
-            }
-            if (!is_gap(at)) points.push_back(at);
+    for (PixelCurve& curve : curves_) place_points(curve);
+}
+
+void PlotPanel::place_points(PixelCurve& curve) const {
+    std::vector<PixelPoint> points;  // up to a gap
+    const auto add_points = [&](std::size_t end) {
+        for (const std::size_t k : visible_points(points)) {
+            curve.points.push_back(points[k]);
+            curve.times_s.push_back(curve.samples[end - points.size() + k].time_s);
         }
-        if (!points.empty()) add_points(curve.samples.size());
+        points.clear();
+    };
+    for (std::size_t k = 0; k < curve.samples.size(); ++k) {
+        const CurvePoint& point = curve.samples[k];
+        const PixelPoint at{plot_.x.px(point.x), plot_.y.px(point.y)};
+        if (is_gap(at) && !points.empty()) {
+            add_points(k);
+            curve.points.push_back(at);
+            curve.times_s.push_back(point.time_s);
+        }
+        if (!is_gap(at)) points.push_back(at);
     }
+    if (!points.empty()) add_points(curve.samples.size());
 }
 
 std::vector<std::string> PlotPanel::nameless() const {

@@ -108,6 +108,8 @@ class PlotPanel {
     [[nodiscard]] int above_px() const;
     /// Places the box and finds the labels; false if there is no room.
     [[nodiscard]] bool place_box(bool is_over_time, int least_label_px, Font& font);
+    /// Fills in the points of a curve in the placed box.
+    void place_points(PixelCurve& curve) const;
 
     int width_px_;
     int height_px_;
