@@ -327,9 +327,9 @@ class SweepReader {
         const toml::table* const output = table("output");
         if (output == nullptr) return;
         refuse_others(*output, "output", {"pictures", "labels", "summary"});
+        const Names picture_names(kPictureNames.begin(), kPictureNames.end());
         if (const toml::node* const node = output->get("pictures"))
-            if (const auto pictures =
-                    word(*node, "output.pictures", {kPictureNames.begin(), kPictureNames.end()}))
+            if (const auto pictures = word(*node, "output.pictures", picture_names))
                 sweep_->pictures = static_cast<Pictures>(*pictures);
         Names labels;
         for (const Label& label : all_labels().subspan(1)) labels.push_back(label.name);
