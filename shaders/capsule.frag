@@ -1,7 +1,7 @@
 #version 450 core
 // Coverage of one pixel by one capsule and by its halo, as k/255; with TINTED also the capsule's share of the pixel's
 // colour. The steps are those of segment_distance_px(), coverage_within(), tint_weight() and TintSums in
-// src/render/coverage.hpp, with operations whose results IEEE 754 fixes to the last bit. Change both together.
+// src/corda/render/coverage.hpp, with operations whose results IEEE 754 fixes to the last bit. Change both together.
 
 flat in vec4 capsule_axis;
 flat in vec4 capsule_extent;

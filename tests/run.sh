@@ -20,6 +20,7 @@ done
 
 [[ "$preset" == tsan ]] && target=thread_tests
 
+"$root/tests/lint/rooms.sh"
 "$root/src/cmake/setup.sh" test
 cd "$root"
 [[ -f "build/$preset/build.ninja" ]] || cmake --preset "$preset" >/dev/null

@@ -1,10 +1,8 @@
-# The public library, install rules, and the files for find_package(corda) and pkg-config.
-include(GNUInstallDirs)
+# Install rules, and the files for find_package(corda) and pkg-config.
 include(CMakePackageConfigHelpers)
 
-corda_add_public_library(
-    FOLDERS core sim view gl render media scene pipeline sweep golden
-    HEADERS
+# The public headers; users of the installed library see only these.
+foreach(header
         corda.hpp
         core/basics.hpp core/image.hpp core/rational.hpp
         golden/compare.hpp golden/check_golden.hpp testing.hpp
@@ -12,21 +10,21 @@ corda_add_public_library(
         pipeline/film.hpp
         scene/scene.hpp
         sim/defs.hpp sim/simulation.hpp sim/system.hpp
-        view/defs.hpp
-    PRIVATE Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json PNG::PNG ZLIB::ZLIB
-        PkgConfig::AVUTIL PkgConfig::CAIRO PkgConfig::EPOXY PkgConfig::FONTCONFIG PkgConfig::FREETYPE PkgConfig::WEBP
-        PkgConfig::TOMLPLUSPLUS ${CORDA_X264_TARGET}
-        ${CMAKE_DL_LIBS})
+        view/defs.hpp)
+    cmake_path(GET header PARENT_PATH folder)
+    install(FILES ${PROJECT_SOURCE_DIR}/src/corda/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/corda/${folder}
+        COMPONENT development)
+endforeach()
 
 install(TARGETS corda_library EXPORT corda_targets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
 install(TARGETS corda RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 # The README and its pages for users, at the same relative places.
-foreach(page LICENSE README.md src/CHANGELOG.md src/cmake/LICENSES.md src/study/speed.png src/study/horizons.png
-        src/study/challenge_three.png src/study/challenge_masses.png src/study/challenge_ten.png src/study/challenge_forty.png
-        src/app/README.md src/golden/README.md src/media/README.md src/python/README.md src/scene/README.md src/study/README.md
-        src/serve/README.md src/sweep/README.md)
+foreach(page LICENSE README.md src/CHANGELOG.md src/cmake/LICENSES.md src/corda/study/speed.png src/corda/study/horizons.png
+        src/corda/study/challenge_three.png src/corda/study/challenge_masses.png src/corda/study/challenge_ten.png src/corda/study/challenge_forty.png
+        src/corda/app/README.md src/corda/golden/README.md src/corda/media/README.md src/corda/python/README.md src/corda/scene/README.md src/corda/study/README.md
+        src/corda/serve/README.md src/corda/sweep/README.md)
     cmake_path(GET page PARENT_PATH folder)
     install(FILES ${PROJECT_SOURCE_DIR}/${page} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT program)
 endforeach()

@@ -1,6 +1,12 @@
-# One library per folder of src. Its headers are included as "corda/<folder>/<name>.hpp" through a link in the build tree
-# that belongs to this library only, so a folder can include only the libraries that it links: the link line defines the
-# allowed includes.
+# One library per room, a folder of src/corda. Headers are included as "corda/<room>/<name>.hpp" from the one include root,
+# src. The table in src/README.md says which room may include which; rooms.awk checks it whenever CMake configures.
+set(CORDA_INCLUDE_ROOT ${PROJECT_SOURCE_DIR}/src)
+file(GLOB_RECURSE sources ${CORDA_INCLUDE_ROOT}/corda/*.hpp ${CORDA_INCLUDE_ROOT}/corda/*.cpp)
+execute_process(COMMAND awk -f ${CMAKE_CURRENT_LIST_DIR}/rooms.awk ${PROJECT_SOURCE_DIR}/src/README.md ${sources}
+    RESULT_VARIABLE status OUTPUT_VARIABLE violations)
+if(NOT status EQUAL 0)
+    message(FATAL_ERROR "an include that src/README.md does not allow:\n${violations}")
+endif()
 
 add_library(corda_options INTERFACE)
 add_library(corda::options ALIAS corda_options)
@@ -51,25 +57,22 @@ function(corda_add_library folder)
     cmake_parse_arguments(ARG "" "EXCEPT" "PUBLIC;PRIVATE" ${ARGN})
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
     list(REMOVE_ITEM sources "${CMAKE_CURRENT_SOURCE_DIR}/${ARG_EXCEPT}")
-    set(include_dir ${PROJECT_BINARY_DIR}/include/${folder})
-    file(MAKE_DIRECTORY ${include_dir}/corda)
-    file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${include_dir}/corda/${folder} SYMBOLIC)
     add_library(corda_${folder}_objects OBJECT ${sources})
-    add_library(corda_${folder} STATIC $<TARGET_OBJECTS:corda_${folder}_objects>)
+    add_library(corda_${folder} STATIC EXCLUDE_FROM_ALL $<TARGET_OBJECTS:corda_${folder}_objects>)
     add_library(corda::${folder} ALIAS corda_${folder})
     foreach(target corda_${folder}_objects corda_${folder})
         # A shared library exports the declarations between visibility pragmas in the public headers.
         set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON
             CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
-        target_include_directories(${target} PUBLIC ${include_dir})
+        target_include_directories(${target} PUBLIC ${CORDA_INCLUDE_ROOT})
         target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} corda::options)
     endforeach()
 endfunction()
 
-# corda_add_public_library(FOLDERS <folders> HEADERS <headers> PRIVATE <targets>): corda::corda, the one library that is
-# installed, from the objects of these folders. Users see only these headers.
+# corda_add_public_library(FOLDERS <folders> PRIVATE <targets>): corda::corda, the one library that is installed, from the
+# objects of these folders.
 function(corda_add_public_library)
-    cmake_parse_arguments(ARG "" "" "FOLDERS;HEADERS;PRIVATE" ${ARGN})
+    cmake_parse_arguments(ARG "" "" "FOLDERS;PRIVATE" ${ARGN})
     add_library(corda_library)  # static, or shared with BUILD_SHARED_LIBS
     add_library(corda::corda ALIAS corda_library)
     set_target_properties(corda_library PROPERTIES OUTPUT_NAME corda EXPORT_NAME corda
@@ -79,16 +82,6 @@ function(corda_add_public_library)
     foreach(folder IN LISTS ARG_FOLDERS)
         target_sources(corda_library PRIVATE $<TARGET_OBJECTS:corda_${folder}_objects>)
     endforeach()
-    # In the build tree, too, users of the library see only the public headers.
-    set(include_dir ${PROJECT_BINARY_DIR}/include/public)
-    file(REMOVE_RECURSE ${include_dir})
-    foreach(header IN LISTS ARG_HEADERS)
-        cmake_path(GET header PARENT_PATH folder)
-        file(MAKE_DIRECTORY ${include_dir}/corda/${folder})
-        file(CREATE_LINK ${PROJECT_SOURCE_DIR}/src/${header} ${include_dir}/corda/${header} SYMBOLIC)
-        install(FILES ${PROJECT_SOURCE_DIR}/src/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/corda/${folder}
-            COMPONENT development)
-    endforeach()
-    target_include_directories(corda_library PUBLIC $<BUILD_INTERFACE:${include_dir}>
+    target_include_directories(corda_library PUBLIC $<BUILD_INTERFACE:${CORDA_INCLUDE_ROOT}>
         $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 endfunction()

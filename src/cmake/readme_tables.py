@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Copies the plots and the tables of a study to src/study/README.md.
+"""Copies the plots and the tables of a study to src/corda/study/README.md.
 
 Usage: corda study -o STUDY --chapter accuracy --chapter speed && src/cmake/readme_tables.py STUDY
        tests/benchmark/run.sh study -o STUDY && src/cmake/readme_tables.py STUDY

@@ -223,7 +223,7 @@ TEST(ElasticRope, OfAllOrdersKeepsItsEnergyBetterByTheOrder) {
 }
 
 TEST(StiffRope, ApproachesTheRigidOneInProportionToItsCompliance) {
-    // R5 (src/sim/README.md), N = 2, L = 2, 90 degrees, t = 1. Let go at the horizontal the links carry
+    // R5 (src/corda/sim/README.md), N = 2, L = 2, 90 degrees, t = 1. Let go at the horizontal the links carry
     // nothing at first, so that their vibrations stay as small as the square of the compliance, and the error
     // is the stretch under the slow tensions.
     const Vec2 rigid = reference::released_tip_m(2, 90.0, 1.0);

@@ -1,4 +1,4 @@
-// Method `exact` against R1, R8 and R11 (section 4 of src/sim/README.md) beyond what published_numbers.cpp
+// Method `exact` against R1, R8 and R11 (section 4 of src/corda/sim/README.md) beyond what published_numbers.cpp
 // compares, and at the first moment of a motion.
 
 #include <gtest/gtest.h>

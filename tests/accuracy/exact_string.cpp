@@ -1,5 +1,5 @@
 // Method `exact` with strings of rigid links, which pull and never push, against closed forms: R9
-// (src/sim/README.md) and other motions made of parabolas, circles and plastic snaps.
+// (src/corda/sim/README.md) and other motions made of parabolas, circles and plastic snaps.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Implicit steps of `exact` (section 12 of src/sim/exact/README.md), which `auto` takes for long ropes: their
+// Implicit steps of `exact` (section 12 of src/corda/sim/exact/README.md), which `auto` takes for long ropes: their
 // order, published numbers, and claims of `auto` about random ropes against the Taylor series at 1e-12.
 // CORDA_BOUND_SCENES=1000 sets the number of ropes.
 

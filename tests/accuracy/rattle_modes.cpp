@@ -1,4 +1,4 @@
-// Method `rattle` on small oscillations of a hanging chain: R4 (src/sim/README.md).
+// Method `rattle` on small oscillations of a hanging chain: R4 (src/corda/sim/README.md).
 
 #include <gtest/gtest.h>
 

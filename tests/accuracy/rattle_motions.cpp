@@ -1,4 +1,4 @@
-// Method `rattle` against R1, R6, R8 and R11 (section 4 of src/sim/README.md) beyond what
+// Method `rattle` against R1, R6, R8 and R11 (section 4 of src/corda/sim/README.md) beyond what
 // published_numbers.cpp compares, at the first moment of a motion, and its order.
 
 #include <gtest/gtest.h>
@@ -137,7 +137,7 @@ TEST(Order, IsTheSlopeOfTheError) {
 }
 
 TEST(Order, FourReachesWhatThePrototypeReached) {
-    // Section 2 of src/sim/README.md: 1.9e-9 at 1000 steps and 7.6e-12 at 4000 over all particles.
+    // Section 2 of src/corda/sim/README.md: 1.9e-9 at 1000 steps and 7.6e-12 at 4000 over all particles.
     EXPECT_LT(error_m(4, 1000), 1e-10);  // measured 5.2e-11 at the tip
     EXPECT_LT(error_m(4, 4000), 1e-12);  // measured 2.2e-13
 }

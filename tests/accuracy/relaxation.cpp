@@ -1,4 +1,4 @@
-// Method `relaxation` against the reference numbers in section 4 of src/sim/README.md.
+// Method `relaxation` against the reference numbers in section 4 of src/corda/sim/README.md.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Energy and phase of a pendulum let go at 90 degrees after very many periods, by every tolerance of `exact`
-// and order of `rattle`, against the closed form (R2 of src/sim/README.md), as a table in Markdown.
+// and order of `rattle`, against the closed form (R2 of src/corda/sim/README.md), as a table in Markdown.
 // Usage: benchmark_long_runs [PERIODS], 10 000 by default; a million take some minutes of one core.
 
 #include <sys/resource.h>

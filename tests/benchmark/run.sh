@@ -12,7 +12,7 @@
 #   sweep  clips of a sweep with all labels: whole, and by stages
 #   draw   frames of examples/swing.toml in several styles
 #   long   energy and phase of a pendulum after 10 000 or PERIODS periods; a million take minutes
-#   study  the pendulum challenge and the observed horizons of src/study/README.md
+#   study  the pendulum challenge and the observed horizons of src/corda/study/README.md
 #   startup  short commands: milliseconds of each, optionally in turns with another build of the program
 # BUILD_DIR is a build folder of the preset ci or release with tests; build/ci by default.
 set -euo pipefail

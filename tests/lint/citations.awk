@@ -29,10 +29,10 @@ function is_there(path, exact,    k) {
 
 function check_reference(citation) {
     sub(/^[^R]/, "", citation)
-    if (!(citation in references)) complain(citation, "is not a heading of src/sim/README.md")
+    if (!(citation in references)) complain(citation, "is not a heading of src/corda/sim/README.md")
 }
 
-# "section 5 of src/sim/README.md", "sections 1 and 4 of ...", or "section 5" within a page. Sections of something else
+# "section 5 of src/corda/sim/README.md", "sections 1 and 4 of ...", or "section 5" within a page. Sections of something else
 # ("RFC 4180 section 2", "section 2 of the book") are taken for sections of a publication.
 function check_section(citation,    page, numbers, count, k) {
     if (citation ~ /^[^ ]*[0-9][^ ]* /) return
@@ -148,7 +148,7 @@ part == "headings" {
     sub(/^#+ +/, "")
     anchors[FILENAME, slug($0)] = 1
     if (match($0, /^[0-9]+(\.[0-9]+)*/)) sections[FILENAME, substr($0, 1, RLENGTH)] = 1
-    if (FILENAME == "src/sim/README.md" && match($0, /^R[0-9]+/)) references[substr($0, 1, RLENGTH)] = 1
+    if (FILENAME == "src/corda/sim/README.md" && match($0, /^R[0-9]+/)) references[substr($0, 1, RLENGTH)] = 1
     next
 }
 

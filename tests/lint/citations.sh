@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Fails if a comment, a message or a page cites something that is not in the repository: a reference number (R1, R2, ...),
 # a section of a README, a file, or the target of a link; or if a page below src has an identifier in backticks that no
-# source contains. How to cite: "R5", "section 5 of src/sim/README.md", "tests/accuracy/data/swing40.txt", "section 5"
+# source contains. How to cite: "R5", "section 5 of src/corda/sim/README.md", "tests/accuracy/data/swing40.txt", "section 5"
 # within one page.
 # Usage: citations.sh [ROOT]
 set -euo pipefail

@@ -12,7 +12,7 @@
 
 namespace corda::test {
 
-/// R1 (src/sim/README.md): positions in metres of the bob of the IFToMM benchmark problem A01 (a pendulum)
+/// R1 (src/corda/sim/README.md): positions in metres of the bob of the IFToMM benchmark problem A01 (a pendulum)
 /// at t = 0.5, 1, ..., 2000 s, with more digits than a double holds.
 inline std::vector<Vec2> read_a01() {
     std::ifstream file(CORDA_TEST_DATA "/a01_pendulum.txt");
@@ -28,7 +28,7 @@ struct ReportFrame {
     std::vector<Vec2> points_m;
 };
 
-/// R11 (src/sim/README.md): the 40 particles at 1, 2, 5 and 10 s.
+/// R11 (src/corda/sim/README.md): the 40 particles at 1, 2, 5 and 10 s.
 inline std::vector<ReportFrame> read_report_swing() {
     constexpr std::size_t kParticles = 40;
     std::ifstream file(CORDA_TEST_DATA "/swing40.txt");

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The source report's program in numpy (section 1 of src/sim/README.md) on the chains of peer.cpp.
+"""The source report's program in numpy (section 1 of src/corda/sim/README.md) on the chains of peer.cpp.
 
 Usage: report.py TRUTH_FOLDER [PROBLEM ...]
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the plots and tables of section "Peers" of src/study/README.md, and the rows of README.md, from runs.csv.
+"""Writes the plots and tables of section "Peers" of src/corda/study/README.md, and the rows of README.md, from runs.csv.
 
 Usage: tables.py RUNS_CSV (tests/benchmark/peers.sh makes it)
 

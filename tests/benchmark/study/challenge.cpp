@@ -236,10 +236,10 @@ report::Table lines_table() {
     int exact = 0;
     for (const char* name : {"chain_dynamics", "chain_series", "dop853", "exact"}) {
         for (const char* ending : {".hpp", ".cpp"})
-            exact += code_lines(std::string("src/sim/exact/") + name + ending);
+            exact += code_lines(std::string("src/corda/sim/exact/") + name + ending);
     }
-    exact += code_lines("src/sim/exact/series_terms.hpp") + code_lines("src/sim/chain_tensions.hpp");
-    table.add({"Corda, exact", double(exact), "src/sim/exact, what a rigid chain needs of it"});
+    exact += code_lines("src/corda/sim/exact/series_terms.hpp") + code_lines("src/corda/sim/chain_tensions.hpp");
+    table.add({"Corda, exact", double(exact), "src/corda/sim/exact, what a rigid chain needs of it"});
     return table;
 }
 

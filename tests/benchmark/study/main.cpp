@@ -1,4 +1,4 @@
-// Measures the chapters of src/study/README.md that need peers or campaigns, and writes them as `corda study`
+// Measures the chapters of src/corda/study/README.md that need peers or campaigns, and writes them as `corda study`
 // does. See tests/benchmark/run.sh.
 
 #include <cstdio>

@@ -72,7 +72,7 @@ TEST(Chapters, CompareThePeriodWithTheory) {
                 testing::EndsWith("no theory in this report has a period for such a scene."));
 }
 
-/// R2, R3 and R4 of section 4 of src/sim/README.md.
+/// R2, R3 and R4 of section 4 of src/corda/sim/README.md.
 TEST(PeriodTheory, IsOfPendulumRodAndRope) {
     const auto period_s = [](const std::string& toml, double angle_deg) {
         const auto theory = period_theory(scene_of(toml), angle_deg);

@@ -168,7 +168,7 @@ std::string file_text(const std::string& path) {
 
 /// CORDA_UPDATE_README=1 in the environment writes the table into the page.
 TEST(SceneKeys, AreListedInTheReadme) {
-    const std::string path = CORDA_EXAMPLES "/../src/scene/README.md";
+    const std::string path = CORDA_EXAMPLES "/../src/corda/scene/README.md";
     const std::string begin = "<!-- begin of the scene keys -->\n";
     const std::string end = "<!-- end of the scene keys -->\n";
     std::string readme = file_text(path);

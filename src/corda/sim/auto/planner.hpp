@@ -1,0 +1,120 @@
+#pragma once
+
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/timeline.hpp"
+#include "corda/sim/forces/forces.hpp"
+#include "corda/sim/recording.hpp"
+#include "corda/sim/simulation.hpp"
+#include "corda/sim/system.hpp"
+
+namespace corda::sim {
+
+/// The tolerance of positions in metres, > 0, for a motion with these bounds. It must not fall when the
+/// bounds grow.
+using ToleranceOf = std::function<double(const MotionBounds&)>;
+
+/// Requirements of a plan: positions within a tolerance of the truth at every frame time of the timeline.
+struct PlanDef {
+    ToleranceOf tolerance_m;
+    Timeline timeline;
+    OnProgress on_progress = {};      ///< called for every frame of every trial, and during long ones
+    std::function<double()> clock_s;  ///< measures the stepping of each run; empty: not measured
+};
+
+/// While it lives, check_cancelled() reports `frames_done` of the timeline to on_progress. Both must outlive
+/// it.
+[[nodiscard]] CancelScope report_frames(const PlanDef& def, const std::int64_t& frames_done);
+
+/// The place of a trial among those of a plan.
+struct TrialKind {
+    bool is_first = true;              ///< if of `rattle`, it has one check
+    bool is_last = true;               ///< its run will be drawn: it continues to the end without its checks
+    double most_steps_1_s = HUGE_VAL;  ///< fails if the run takes more
+};
+
+/// Runs the trial's method and its checks side by side, the checks in turned coordinates, so that their
+/// rounding differs from the start on, and records in `trial` how far they agree. A run whose error is not
+/// far above rounding has three checks, and what these differ by counts twice. `recording` is cleared and
+/// receives the run's states. Once the difference is too large for good, the checks end. Each that begins to
+/// move adds one to `passes`. Throws corda::Refusal.
+void run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial& trial,
+               Recording& recording, int& passes);
+
+/// The reason a method cannot run a system; std::nullopt if it can.
+[[nodiscard]] std::optional<Refusal> refusal(const System& system, const WorldDef& world,
+                                             const MethodDef& method, double frame_interval_s);
+
+/// The checks of a trial: tighter runs in turned coordinates, which round otherwise than the trial's run, and
+/// than one another, from the start on. Those of large systems advance in threads of their own; positions are
+/// the same either way.
+class Checks : NonCopyable {
+  public:
+    static constexpr std::size_t kMaxCount = 3;
+
+    /// `count` of them, 1 to kMaxCount.
+    Checks(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
+           std::size_t count);
+    /// For a string of rigid links: runs in which links come taut `longer_m` later or earlier. Of any two of
+    /// eight neighbours, each is the earlier one in some run.
+    Checks(const System& string, const Forces& forces, const ExactDef& method, double longer_m);
+    /// Ends the work of start().
+    ~Checks();
+
+    [[nodiscard]] std::size_t size() const { return checks_.size(); }
+
+    /// Begins to advance all to a time; the caller may advance the run meanwhile.
+    void start(double time_s);
+    /// Waits until they are there. kDiverged also if one has branched. Throws what Solver::advance_to throws.
+    [[nodiscard]] Status finish();
+
+    /// The largest distance of a particle from its positions in the checks plus, if there are several, twice
+    /// their own differences. These are rounding; a run that is no better could be near the checks by chance
+    /// and far from the truth. Infinite for a NaN.
+    [[nodiscard]] double difference_m(const State& state) const;
+
+    /// For a string of rigid links, StringPart::margin_m() of the first check; otherwise infinite.
+    [[nodiscard]] double margin_m() const;
+
+    /// Steps of the first check up to the last finish().
+    [[nodiscard]] std::uint64_t steps() const { return steps_; }
+
+  private:
+    class Check;
+
+    std::atomic<bool> is_abandoned_ = false;
+    bool in_threads_;
+    bool are_alike_ = true;  ///< they differ by rounding alone
+    double time_s_ = 0.0;
+    std::uint64_t steps_ = 0;
+    std::vector<std::unique_ptr<Check>> checks_;
+    std::vector<std::future<Status>> pending_;  ///< declared last: it ends before what it uses does
+};
+
+/// Finds a method whose positions stay within the tolerance for the only body of `system`, and verifies it by
+/// tighter runs (section 3.6 of src/corda/sim/README.md). `recording` then holds the states of the verified run,
+/// which are drawn. If no trial stays within the tolerance to the end, the tightest is taken, with a horizon.
+/// Decisions depend on counts and positions, never on a clock. Throws corda::Refusal if no method can run the
+/// body.
+[[nodiscard]] BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& def,
+                                 Recording& recording);
+
+/// The method of each body; std::nullopt: plan_body() chooses it.
+using NamedMethods = std::vector<std::optional<MethodDef>>;
+
+/// Plans the bodies one after the other; those whose method is named are run by it. The tolerance of each is
+/// that for the bounds of its own motion, those of the bodies before it and the start of all. Throws as
+/// plan_body().
+[[nodiscard]] Plan plan_methods(const System& system, const NamedMethods& named, const WorldDef& world,
+                                const PlanDef& def, Recording& recording);
+
+}  // namespace corda::sim

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "corda/sim/simulation.hpp"
+#include "corda/sim/system.hpp"
+
+namespace corda::sim {
+
+/// The conservative forces of bars that stretch and of ropes that resist bending, in Cartesian coordinates
+/// (section 3.2 of src/corda/sim/README.md). A bar of length 0 has no direction: it exerts no force, and no bend
+/// acts at its ends.
+///
+/// Positions and forces are arrays with one entry per particle, from the first one on.
+class ElasticForces {
+  public:
+    /// Of the bars of stretching bodies and of all bends among the particles `first_particle` ..
+    /// `first_particle + particle_count - 1` of the system, which are whole bodies. Bars and bends that join
+    /// pinned particles alone never move and are left out.
+    ElasticForces(const System& system, std::size_t first_particle, std::size_t particle_count);
+
+    [[nodiscard]] bool empty() const { return springs_.empty() && joints_.empty(); }
+
+    /// Adds the forces at these positions to `fx_n`, `fy_n`, those on pinned particles too. Returns a bound
+    /// on the square of the largest angular frequency of small motions about the positions, 1 / s^2:
+    /// Gershgorin's, the largest over all particles of the inverse mass times the sum of the stiffnesses that
+    /// act on the particle, that of a bar being max(1 / (C l), |T| / d).
+    double add_forces(const double* x_m, const double* y_m, double* fx_n, double* fy_n) const;
+    /// The same for the bends alone.
+    double add_bend_forces(const double* x_m, const double* y_m, double* fx_n, double* fy_n) const;
+
+    /// The same bound for usual states: bars no shorter than half of their rest lengths, joints bent by up to
+    /// 0.2 radians.
+    [[nodiscard]] double common_square_frequency() const;
+
+    [[nodiscard]] double energy_j(const double* x_m, const double* y_m) const;
+
+    /// Writes the tensions of the bars that stretch, in N, to an array of all bars of the system.
+    void tensions(const double* x_m, const double* y_m, std::vector<double>& tension_n) const;
+
+  private:
+    struct Spring {
+        std::size_t bar = 0;  ///< of the system
+        std::uint32_t a = 0;
+        std::uint32_t b = 0;
+        double rest_m = 0.0;
+        double stiffness_n_m = 0.0;    ///< 1 / (C l)
+        double least_stretch_m = 0.0;  ///< lower bound on d - l: 0 for a string, otherwise none
+    };
+    struct Joint {
+        std::uint32_t a = 0;
+        std::uint32_t b = 0;
+        std::uint32_t c = 0;
+        double stiffness_n_m = 0.0;
+        double before_m = 0.0;  ///< |ab| at the start
+        double after_m = 0.0;   ///< |bc| at the start
+    };
+    void add_springs(const System& system, const Body& body);
+    void add_joints(const System& system, std::size_t particle_count);
+    void bound_frequencies(const double* inverse_mass_1_kg, std::size_t particle_count);
+
+    std::size_t first_particle_ = 0;
+    std::vector<Spring> springs_;
+    std::vector<Joint> joints_;
+    /// Gershgorin's bounds for bars of at least half of their rest lengths, and for straight joints of the
+    /// initial lengths.
+    double spring_square_frequency_ = 0.0;
+    double joint_square_frequency_ = 0.0;
+};
+
+/// Computes the energy of states; that of the weight is 0 at the origin of the system.
+class EnergyMeter {
+  public:
+    /// `methods`: one per body of the system, or one for all. The system must outlive it.
+    EnergyMeter(const System& system, const WorldDef& world, std::span<const MethodDef> methods);
+
+    /// The energy of a state that has velocities.
+    [[nodiscard]] Energy of(const State& state) const;
+
+  private:
+    const System* system_;
+    std::vector<Vec2> weight_n_;  ///< on each particle
+    ElasticForces elastic_;
+};
+
+}  // namespace corda::sim
