@@ -1,5 +1,5 @@
-// Method `exact` against R1, R8 and R11 (section 4 of src/corda/sim/README.md) beyond what published_numbers.cpp
-// compares, and at the first moment of a motion.
+// Method `exact` against R1, R8 and R11 (section 4 of src/corda/sim/README.md) beyond what
+// published_numbers.cpp compares, and at the first moment of a motion.
 
 #include <gtest/gtest.h>
 

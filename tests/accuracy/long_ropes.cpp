@@ -1,5 +1,5 @@
-// Implicit steps of `exact` (section 12 of src/corda/sim/exact/README.md), which `auto` takes for long ropes: their
-// order, published numbers, and claims of `auto` about random ropes against the Taylor series at 1e-12.
+// Implicit steps of `exact` (section 12 of src/corda/sim/exact/README.md), which `auto` takes for long ropes:
+// their order, published numbers, and claims of `auto` about random ropes against the Taylor series at 1e-12.
 // CORDA_BOUND_SCENES=1000 sets the number of ropes.
 
 #include <gtest/gtest.h>

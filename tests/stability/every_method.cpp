@@ -1,5 +1,5 @@
-// What section 5 of src/corda/sim/README.md asks of all methods: the same bytes from two processes, no work on
-// denormal numbers; of method auto, the same positions at every frame rate.
+// What section 5 of src/corda/sim/README.md asks of all methods: the same bytes from two processes, no work
+// on denormal numbers; of method auto, the same positions at every frame rate.
 
 #include <gtest/gtest.h>
 

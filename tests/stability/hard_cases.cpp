@@ -1,5 +1,6 @@
-// The hard cases of section 5 of src/corda/sim/README.md and tests of bits and denormal numbers. The cases, their
-// bounds and measured values are in src/corda/study/hard_*.cpp. CORDA_TEST_LONG=1 also runs the long ones.
+// The hard cases of section 5 of src/corda/sim/README.md and tests of bits and denormal numbers. The cases,
+// their bounds and measured values are in src/corda/study/hard_*.cpp. CORDA_TEST_LONG=1 also runs the long
+// ones.
 
 #include <gtest/gtest.h>
 

@@ -12,8 +12,8 @@
 
 namespace corda::test {
 
-/// R1 (src/corda/sim/README.md): positions in metres of the bob of the IFToMM benchmark problem A01 (a pendulum)
-/// at t = 0.5, 1, ..., 2000 s, with more digits than a double holds.
+/// R1 (src/corda/sim/README.md): positions in metres of the bob of the IFToMM benchmark problem A01 (a
+/// pendulum) at t = 0.5, 1, ..., 2000 s, with more digits than a double holds.
 inline std::vector<Vec2> read_a01() {
     std::ifstream file(CORDA_TEST_DATA "/a01_pendulum.txt");
     std::vector<Vec2> points_m;

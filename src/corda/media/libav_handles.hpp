@@ -1,7 +1,7 @@
 #pragma once
 
-// The only header that includes libav, private to src/corda/media: headers that other folders include must not
-// include this one.
+// The only header that includes libav, private to src/corda/media: headers that other folders include must
+// not include this one.
 
 extern "C" {
 #include <libavcodec/avcodec.h>

@@ -8,8 +8,8 @@
 namespace corda::reference {
 
 // Reference numbers R1 to R7 and R11, computed independently of Corda. Their definitions and sources are in
-// section 4 of src/corda/sim/README.md. They have more digits than a double holds unless a table says otherwise;
-// masses are 1 kg and lengths 1 m likewise.
+// section 4 of src/corda/sim/README.md. They have more digits than a double holds unless a table says
+// otherwise; masses are 1 kg and lengths 1 m likewise.
 
 /// The gravity that all of them take, in m/s^2.
 inline constexpr double kGravity = 9.81;
@@ -152,8 +152,8 @@ inline constexpr std::array<PublishedTip, 4> kReportTips{{
     {10.0, {3.798605351207355, -39.0037520751634}},
 }};
 
-/// The highest update rate in the source report's table (section 1 of src/corda/sim/README.md): its steps, with
-/// drawing, for bars of reach 7.
+/// The highest update rate in the source report's table (section 1 of src/corda/sim/README.md): its steps,
+/// with drawing, for bars of reach 7.
 struct ReportRate {
     int particles;
     double updates_per_s;

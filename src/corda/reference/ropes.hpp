@@ -15,8 +15,8 @@ namespace corda::reference {
 /// The rope that a row of R5 is about.
 [[nodiscard]] RopeDef released_rope(const ReleasedChain& row);
 
-/// The source report's start: a line of `particles` with step (0.1, -1) (section 1 of src/corda/sim/README.md,
-/// R11).
+/// The source report's start: a line of `particles` with step (0.1, -1) (section 1 of
+/// src/corda/sim/README.md, R11).
 [[nodiscard]] RopeDef report_rope(int particles);
 
 /// The folded chain of R7: half of its links hang down from the origin, one goes across, the others go up to

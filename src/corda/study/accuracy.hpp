@@ -17,8 +17,8 @@ struct AccuracyMethod {
     double bound = 0.0;  ///< the error stays below it; tests/accuracy holds the method to it
 };
 
-/// A problem with a known answer (section 4 of src/corda/sim/README.md) and the methods that run it, in a study and
-/// in tests/accuracy.
+/// A problem with a known answer (section 4 of src/corda/sim/README.md) and the methods that run it, in a
+/// study and in tests/accuracy.
 struct AccuracyCase {
     std::string reference;  ///< "R5"
     std::string subject;    ///< of all cases of the reference: "released chains"

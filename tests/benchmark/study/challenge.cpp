@@ -238,7 +238,8 @@ report::Table lines_table() {
         for (const char* ending : {".hpp", ".cpp"})
             exact += code_lines(std::string("src/corda/sim/exact/") + name + ending);
     }
-    exact += code_lines("src/corda/sim/exact/series_terms.hpp") + code_lines("src/corda/sim/chain_tensions.hpp");
+    exact +=
+        code_lines("src/corda/sim/exact/series_terms.hpp") + code_lines("src/corda/sim/chain_tensions.hpp");
     table.add({"Corda, exact", double(exact), "src/corda/sim/exact, what a rigid chain needs of it"});
     return table;
 }

@@ -1,5 +1,5 @@
-// Measures the chapters of src/corda/study/README.md that need peers or campaigns, and writes them as `corda study`
-// does. See tests/benchmark/run.sh.
+// Measures the chapters of src/corda/study/README.md that need peers or campaigns, and writes them as `corda
+// study` does. See tests/benchmark/run.sh.
 
 #include <cstdio>
 

@@ -101,10 +101,10 @@ class Checks : NonCopyable {
 };
 
 /// Finds a method whose positions stay within the tolerance for the only body of `system`, and verifies it by
-/// tighter runs (section 3.6 of src/corda/sim/README.md). `recording` then holds the states of the verified run,
-/// which are drawn. If no trial stays within the tolerance to the end, the tightest is taken, with a horizon.
-/// Decisions depend on counts and positions, never on a clock. Throws corda::Refusal if no method can run the
-/// body.
+/// tighter runs (section 3.6 of src/corda/sim/README.md). `recording` then holds the states of the verified
+/// run, which are drawn. If no trial stays within the tolerance to the end, the tightest is taken, with a
+/// horizon. Decisions depend on counts and positions, never on a clock. Throws corda::Refusal if no method
+/// can run the body.
 [[nodiscard]] BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& def,
                                  Recording& recording);
 

@@ -76,8 +76,8 @@ struct SeriesArrays {
 [[nodiscard]] bool has_wide_series();
 
 /// The motion of one chain of a ChainDynamics as a power series in time: sections 3 to 8 of
-/// src/corda/sim/exact/README.md. The tridiagonal matrix of the tensions is the same for all coefficients and is
-/// factorised once per step, from both ends.
+/// src/corda/sim/exact/README.md. The tridiagonal matrix of the tensions is the same for all coefficients and
+/// is factorised once per step, from both ends.
 ///
 /// Source: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer
 /// 1993, I.8 (recursive computation of coefficients); A. Jorba, M. Zou, Experimental Mathematics 14 (2005)

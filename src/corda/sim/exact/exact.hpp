@@ -16,7 +16,8 @@ namespace corda::sim {
 /// ExactDef::tolerance.
 [[nodiscard]] StepControl step_control(double inverse_timescale_1_s, double tolerance);
 
-/// Method `exact`: a body is integrated in the coordinates that suit it (section 3.5 of src/corda/sim/README.md).
+/// Method `exact`: a body is integrated in the coordinates that suit it (section 3.5 of
+/// src/corda/sim/README.md).
 ///
 /// - Ropes of rigid links in the directions of the links (ChainDynamics), by Taylor series in time (ChainPart),
 ///   or by Dop853 if they are very long or resist bending.

@@ -26,8 +26,8 @@ struct BarGroups {
 };
 
 /// The motion of one body of rigid bars in which bars turn together: opposite sides of parallelograms, and
-/// the sides of triangles (section 3.5 of src/corda/sim/README.md). A grid of r x c particles without diagonals has
-/// r + c - 2 such groups instead of 2 r c - r - c bars; a plate has one.
+/// the sides of triangles (section 3.5 of src/corda/sim/README.md). A grid of r x c particles without
+/// diagonals has r + c - 2 such groups instead of 2 r c - r - c bars; a plate has one.
 ///
 /// A state has one array each of c, s and w over the groups: group g has turned since the start by the angle
 /// whose cosine and sine are c and s, and turns with the angular velocity w. Without a pin, the displacement

@@ -11,8 +11,8 @@
 namespace corda::sim {
 
 /// The conservative forces of bars that stretch and of ropes that resist bending, in Cartesian coordinates
-/// (section 3.2 of src/corda/sim/README.md). A bar of length 0 has no direction: it exerts no force, and no bend
-/// acts at its ends.
+/// (section 3.2 of src/corda/sim/README.md). A bar of length 0 has no direction: it exerts no force, and no
+/// bend acts at its ends.
 ///
 /// Positions and forces are arrays with one entry per particle, from the first one on.
 class ElasticForces {

@@ -32,7 +32,8 @@ class StoppableLdlt final : public Eigen::SimplicialLDLT<Eigen::SparseMatrix<dou
 
 /// Bars in any graph: closed ropes, nets. The matrix G W G' at the start of a stage is factorised once per
 /// stage and used for all corrections of the stage: a simplified Newton method. Bars that others imply at the
-/// start are left out; a stage fails if one of them loses its length. See section 3.4 of src/corda/sim/README.md.
+/// start are left out; a stage fails if one of them loses its length. See section 3.4 of
+/// src/corda/sim/README.md.
 class GraphConstraints final : public ConstraintSolver {
   public:
     /// Throws corda::Refusal for bars that depend on each other at the start and do not stay so.

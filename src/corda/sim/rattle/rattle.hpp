@@ -25,8 +25,8 @@ struct Composition {
 /// stages). The numbers are those of Hairer, Lubich, Wanner, Geometric Numerical Integration, V.3.2.
 [[nodiscard]] const Composition& composition(int order);
 
-/// Method `rattle`: RATTLE composed to order 2, 4, 6 or 8 (section 3.4 of src/corda/sim/README.md). Between stages
-/// the solver omits the impulses that make velocities consistent and merges adjacent half kicks.
+/// Method `rattle`: RATTLE composed to order 2, 4, 6 or 8 (section 3.4 of src/corda/sim/README.md). Between
+/// stages the solver omits the impulses that make velocities consistent and merges adjacent half kicks.
 ///
 /// Grid point n is at n h, h being the step; `steps()` counts grid steps. A time between two grid points is
 /// reached by one shorter step on a copy, so the trajectory does not depend on the requested times. A grid
