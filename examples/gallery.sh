@@ -10,9 +10,13 @@ cd "$root/examples"
 # A plain background keeps the files small. The rate is one that GIF can hold.
 look=(--size 640x360 -q --force --set 'style.background="#121828"')
 "$corda" render fifty_pendulums.toml --fps 25 --frames 140:215 "${look[@]}" --size 480x270 -o pictures/fifty_pendulums.gif
-"$corda" render methods/{relaxation,rattle,exact}.toml --panels 3x1 --frames 120:121 "${look[@]}" --size 640x240 \
-    -o pictures/methods_%d.png
-mv pictures/methods_120.png pictures/methods.png
+scratch=$(mktemp -d)
+trap 'rm -r "$scratch"' EXIT
+for method in relaxation rattle exact; do
+    "$corda" still "methods/$method.toml" --frame 120 "${look[@]}" --size 212x240 -o "$scratch/$method.png"
+done
+ffmpeg -v error -y -i "$scratch/relaxation.png" -i "$scratch/rattle.png" -i "$scratch/exact.png" \
+    -filter_complex hstack=3 pictures/methods.png
 
 # Name, command and times of each picture, and its own options.
 while read -r name command times more; do

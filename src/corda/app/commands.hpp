@@ -87,7 +87,7 @@ struct SceneOptions {
     void add_size(CLI::App& command);
     /// `--fps`, whose help is `rate`, and `--duration`.
     void add_timing(CLI::App& command, const std::string& rate = "frames per second");
-    /// `--from FILE` in place of a scene file, and `--panels` with the scenes of the other panels.
+    /// `--from FILE` in place of a scene file.
     void add_from(CLI::App& command);
     /// Throws CLI::RequiredError if there is neither. To be called when the command line is parsed.
     void require() const;
@@ -98,13 +98,6 @@ struct SceneOptions {
     /// Throws corda::Error as load_scene does, but with kUsage if the scene is valid without the options
     /// other than --set: then the command line is wrong, not the scene.
     [[nodiscard]] Scene load(const Console& console) const;
-    /// The columns of the grid that `--panels` gives, or that of the file of `--from`; 1 without panels.
-    /// Throws corda::Error (kUsage) if the scenes fill no grid.
-    [[nodiscard]] int columns(const Console& console) const;
-    /// The scenes of all panels, in their sizes. `resize` may change the size of the whole, which then is
-    /// laid out again, and returns true if it does.
-    [[nodiscard]] std::vector<Scene> load_panels(const Console& console,
-                                                 const std::function<bool(VideoDef& whole)>& resize) const;
     /// True if the command line says video.size.
     [[nodiscard]] bool gives_size() const;
     /// Parses the scene with the additional settings `more`; `text` and `name` are used if no scene file was
@@ -119,12 +112,7 @@ struct SceneOptions {
     /// Warns if other fonts draw its texts.
     [[nodiscard]] Scene load_from(const Console& console, const Provenance& origin) const;
 
-    /// The same in the sizes that they have by themselves, or in a file with panels.
-    [[nodiscard]] std::vector<Scene> load_each(const Console& console) const;
-
     std::string from_;
-    std::vector<std::string> others_;  ///< scenes of the panels after the first
-    std::string panels_;
     std::vector<Setting> of_options_;          ///< those of `settings` that did not come from --set
     mutable std::optional<std::string> text_;  ///< of the scene file, which may be a pipe
     mutable std::optional<Provenance> provenance_;
@@ -186,8 +174,6 @@ void warn_of_branch(const Console& console, const Film& film);
 /// The keys that every JSON result about a film has: method, sizes, error bound, camera, passes; null for
 /// unknown values. Simulates the film if necessary.
 [[nodiscard]] nlohmann::json film_json(Film& film);
-/// The same of one film, or a list `panels` of that of each.
-[[nodiscard]] nlohmann::json films_json(std::vector<Film>& films);
 
 /// Pictures in which nothing is in view.
 struct EmptyPictures {

@@ -137,19 +137,11 @@ void SceneOptions::add_to(CLI::App& command, Need need) {
 
 void SceneOptions::add_from(CLI::App& command) {
     CLI::Option* scene = command.get_option("SCENE")->required(false);
-    CLI::Option* file =
-        command
-            .add_option(
-                "--from", from_,
-                "repeat a picture or a video of corda: take the scene that it carries in place of SCENE")
-            ->type_name("FILE");
-    file->excludes(scene);
-    command.add_option("SCENES", others_, "scenes of the other panels");
     command
-        .add_option("--panels", panels_,
-                    "show the scenes in a grid, row by row, in one picture, whose size is --size")
-        ->type_name("COLUMNSxROWS")
-        ->excludes(file);
+        .add_option("--from", from_,
+                    "repeat a picture or a video of corda: take the scene that it carries in place of SCENE")
+        ->type_name("FILE")
+        ->excludes(scene);
 }
 
 void SceneOptions::require() const {
@@ -198,59 +190,6 @@ Scene SceneOptions::load(const Console& console) const {
     if (const std::string notice = cost_notice(scene); !notice.empty()) console.info(notice);
     warn_of_unseen_texts(console, scene);
     return scene;
-}
-
-int SceneOptions::columns(const Console& console) const {
-    if (is_from()) return std::max(1, provenance(console).columns);
-    const std::size_t scenes = others_.size() + 1;
-    int columns = 1;
-    int rows = 1;
-    const bool is_read = panels_.empty() || (std::sscanf(panels_.c_str(), "%4dx%4d", &columns, &rows) == 2 &&
-                                             fmt::format("{}x{}", columns, rows) == panels_);
-    if (is_read && columns > 0 && rows > 0 &&
-        static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) == scenes)
-        return columns;
-    const std::string count = counted(std::ssize(others_) + 1, "scene");
-    throw Error(ExitCode::kUsage,
-                panels_.empty()
-                    ? fmt::format("{} need a grid COLUMNSxROWS; give e.g. --panels {}x1", count, scenes)
-                    : fmt::format("--panels {}: is no grid COLUMNSxROWS of {}; give e.g. --panels {}x1",
-                                  panels_, count, scenes));
-}
-
-std::vector<Scene> SceneOptions::load_panels(const Console& console,
-                                             const std::function<bool(VideoDef& whole)>& resize) const {
-    const int all = columns(console);
-    std::vector<Scene> scenes = load_each(console);
-    VideoDef whole = scenes.front().video;
-    if (!gives_size()) {
-        if (!is_from())  // all get the size of the first one
-            for (Scene& scene : scenes) {
-                scene.video.width_px = whole.width_px;
-                scene.video.height_px = whole.height_px;
-            }
-        whole = panels_video(scenes, all);
-    }
-    if (resize(whole) || gives_size()) lay_out_panels(scenes, all, whole.width_px, whole.height_px);
-    return scenes;
-}
-
-std::vector<Scene> SceneOptions::load_each(const Console& console) const {
-    const bool has_panels = is_from() && provenance(console).columns > 0;
-    std::vector<Scene> scenes;
-    if (has_panels) {
-        for (const Provenance& part : provenance(console).parts) scenes.push_back(load_from(console, part));
-        if (!gives_size()) check_size_from_file(panels_video(scenes, provenance(console).columns));
-    } else {
-        scenes.push_back(load(console));
-    }
-    SceneOptions other = *this;
-    for (const std::string& name : others_) {
-        other.path = name;
-        other.text_.reset();
-        scenes.push_back(other.load(console));
-    }
-    return scenes;
 }
 
 Scene SceneOptions::parse(const std::vector<Setting>& more, std::string_view text,

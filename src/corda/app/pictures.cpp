@@ -44,16 +44,11 @@ struct FigureOptions {
     std::vector<double> film_times_of_origin;
     int columns_of_origin = 0;
     bool blurs_as_video = false;  ///< it is a frame
-    int panel_columns = 1;        ///< of the scenes that load() returned
 
     /// `output_help` says what the output may be.
     void add_to(CLI::App& command, const std::string& output_help);
-    /// The scenes of the panels, with the picture size that `--width-mm` asks for.
-    [[nodiscard]] std::vector<Scene> load(const Console& console);
-    /// The requested times, up to the end of the longest of the scenes.
-    [[nodiscard]] std::vector<RequestedTime> list(const std::vector<Scene>& scenes) const;
-    /// The figure of one scene at times of which some may be after its end.
-    [[nodiscard]] FigureDef figure_of(const Scene& scene, const std::vector<RequestedTime>& some) const;
+    /// The scene with the picture size that `--width-mm` asks for.
+    [[nodiscard]] Scene load(const Console& console) const;
     [[nodiscard]] double shutter_of(const Scene& one) const {
         return blurs_as_video ? one.video.shutter : shutter;
     }
@@ -63,18 +58,18 @@ struct FigureOptions {
     void take_origin(const Console& console, std::string_view command);
     /// The times that the film records in addition to those of frames.
     [[nodiscard]] std::vector<double> film_times(const std::vector<RequestedTime>& some) const;
-    [[nodiscard]] std::vector<Film> films_of(const Console& console, const std::vector<Scene>& scenes,
-                                             const std::vector<RequestedTime>& some) const;
-    /// The text chunks and the resolution of the file of a figure. `scenes` have the sizes of whole panels;
-    /// `origin` gets its times, of which the films also have `all_s`.
-    [[nodiscard]] PngInfo png_info(const std::vector<Scene>& scenes, const std::vector<RequestedTime>& some,
+    [[nodiscard]] Film film_of(const Console& console, const Scene& one,
+                               const std::vector<RequestedTime>& some) const;
+    /// The text chunks and the resolution of the file of a figure. `one` has the size of the picture;
+    /// `origin` gets its times, of which the film also has `all_s`.
+    [[nodiscard]] PngInfo png_info(const Scene& one, const std::vector<RequestedTime>& some,
                                    PictureOrigin origin, const std::vector<double>& all_s) const;
-    /// Makes the only picture of a command, and reports it. `defs`: the figure of each scene.
-    ExitCode write_one(const Console& console, const std::vector<Scene>& scenes,
-                       const std::vector<RequestedTime>& some, const std::vector<FigureDef>& defs) const;
+    /// Makes the only picture of a command, and reports it.
+    ExitCode write_one(const Console& console, const Scene& one, const std::vector<RequestedTime>& some,
+                       const FigureDef& def) const;
 
   private:
-    mutable std::optional<Provenance> made_;  ///< of the scenes that png_info() is given
+    mutable std::optional<Provenance> made_;  ///< of the scene that png_info() is given
 };
 
 void FigureOptions::add_to(CLI::App& command, const std::string& output_help) {
@@ -124,67 +119,43 @@ void FigureOptions::take_origin(const Console& console, std::string_view command
     if (!pixels_per_inch && !width_mm) pixels_per_inch = picture->pixels_per_inch;
 }
 
-std::vector<Scene> FigureOptions::load(const Console& console) {
-    panel_columns = scene.columns(console);
-    return scene.load_panels(console, [this](VideoDef& whole) {
-        if (!width_mm) return false;
-        const double width_px = std::round(*width_mm / kMmPerInch * pixels_per_inch.value_or(kPrintPpi));
-        const double height_px = std::round(width_px * whole.height_px / whole.width_px);
-        const bool is_sane = std::max(width_px, height_px) <= kMaxSidePx;
-        if (!is_sane || !is_picture_size(std::lround(width_px), std::lround(height_px))) {
-            throw_usage(
-                "--width-mm {} at {} pixels per inch is {}x{} pixels, not 1 .. {} per side and {} in all; "
-                "choose another width or --ppi",
-                *width_mm, pixels_per_inch.value_or(kPrintPpi), width_px, height_px, kMaxSidePx,
-                kMaxPicturePx);
-        }
-        whole.width_px = static_cast<int>(width_px);
-        whole.height_px = static_cast<int>(height_px);
-        return true;
-    });
-}
-
-std::int64_t frame_count_of(const Scene& scene) {
-    return scene.video.scene_rate().frame_count(scene.world.duration_s);
-}
-
-std::vector<RequestedTime> FigureOptions::list(const std::vector<Scene>& scenes) const {
-    const auto is_shorter = [this](const Scene& a, const Scene& b) {
-        return times.frames.empty() ? a.world.duration_s < b.world.duration_s
-                                    : frame_count_of(a) < frame_count_of(b);
-    };
-    std::vector<RequestedTime> all = times.list(*std::max_element(scenes.begin(), scenes.end(), is_shorter));
-    for (RequestedTime& time : all)  // of the first scene, as in a video
-        if (time.frame) time.time_s = scenes.front().video.scene_rate().time_s(*time.frame);
-    return all;
-}
-
-FigureDef FigureOptions::figure_of(const Scene& one, const std::vector<RequestedTime>& some) const {
-    FigureDef def;
-    for (const RequestedTime& time : some)
-        def.times_s.push_back(
-            time.frame ? one.video.scene_rate().time_s(std::min(*time.frame, frame_count_of(one) - 1))
-                       : std::min(time.time_s, one.world.duration_s));
-    return def;
-}
-
-std::vector<Film> FigureOptions::films_of(const Console& console, const std::vector<Scene>& scenes,
-                                          const std::vector<RequestedTime>& some) const {
-    std::vector<Film> films;
-    for (const Scene& one : scenes) {
-        FilmDef def;
-        def.on_progress = show_progress(console, "simulate");
-        def.stills_s = figure_of(one, some).times_s;
-        for (const double time_s : film_times_of_origin)
-            if (time_s <= one.world.duration_s) def.stills_s.push_back(time_s);
-        def.motion_budget_bytes /= scenes.size();
-        gl.apply_to(def);
-        Film& film = films.emplace_back(one, def);
-        report_plan(console, film);
-        console.detail(fmt::format("{}: {}", film.scene().name, system_text(film.system())));
-        warn_of_room(console, film);
+Scene FigureOptions::load(const Console& console) const {
+    Scene one = scene.load(console);
+    if (!width_mm) return one;
+    VideoDef& video = one.video;
+    const double width_px = std::round(*width_mm / kMmPerInch * pixels_per_inch.value_or(kPrintPpi));
+    const double height_px = std::round(width_px * video.height_px / video.width_px);
+    const bool is_sane = std::max(width_px, height_px) <= kMaxSidePx;
+    if (!is_sane || !is_picture_size(std::lround(width_px), std::lround(height_px))) {
+        throw_usage(
+            "--width-mm {} at {} pixels per inch is {}x{} pixels, not 1 .. {} per side and {} in all; "
+            "choose another width or --ppi",
+            *width_mm, pixels_per_inch.value_or(kPrintPpi), width_px, height_px, kMaxSidePx, kMaxPicturePx);
     }
-    return films;
+    video.width_px = static_cast<int>(width_px);
+    video.height_px = static_cast<int>(height_px);
+    return one;
+}
+
+std::vector<double> times_of(const std::vector<RequestedTime>& some) {
+    std::vector<double> times_s;
+    for (const RequestedTime& time : some) times_s.push_back(time.time_s);
+    return times_s;
+}
+
+Film FigureOptions::film_of(const Console& console, const Scene& one,
+                            const std::vector<RequestedTime>& some) const {
+    FilmDef def;
+    def.on_progress = show_progress(console, "simulate");
+    def.stills_s = times_of(some);
+    for (const double time_s : film_times_of_origin)
+        if (time_s <= one.world.duration_s) def.stills_s.push_back(time_s);
+    gl.apply_to(def);
+    Film film(one, def);
+    report_plan(console, film);
+    console.detail(fmt::format("{}: {}", film.scene().name, system_text(film.system())));
+    warn_of_room(console, film);
+    return film;
 }
 
 std::vector<double> FigureOptions::film_times(const std::vector<RequestedTime>& some) const {
@@ -196,7 +167,7 @@ std::vector<double> FigureOptions::film_times(const std::vector<RequestedTime>& 
     return times_s;
 }
 
-PngInfo FigureOptions::png_info(const std::vector<Scene>& scenes, const std::vector<RequestedTime>& some,
+PngInfo FigureOptions::png_info(const Scene& one, const std::vector<RequestedTime>& some,
                                 PictureOrigin origin, const std::vector<double>& all_s) const {
     std::string times_text;
     std::string frames;
@@ -204,8 +175,8 @@ PngInfo FigureOptions::png_info(const std::vector<Scene>& scenes, const std::vec
         times_text += fmt::format("{}{}", times_text.empty() ? "" : ", ", time.time_s);
         if (time.frame) frames += fmt::format("{}{}", frames.empty() ? "" : ", ", *time.frame);
     }
-    const double ppi = width_mm ? panels_video(scenes, panel_columns).width_px * kMmPerInch / *width_mm
-                                : pixels_per_inch.value_or(kScreenPpi);
+    const double ppi =
+        width_mm ? one.video.width_px * kMmPerInch / *width_mm : pixels_per_inch.value_or(kScreenPpi);
     for (const RequestedTime& time : some)
         origin.times.push_back({time.frame, time.frame ? 0.0 : time.time_s});
     const bool are_origins = std::ranges::all_of(all_s, [&](double time_s) {
@@ -214,57 +185,50 @@ PngInfo FigureOptions::png_info(const std::vector<Scene>& scenes, const std::vec
     });
     if (!are_origins) origin.film_times_s = all_s;
     if (ppi != kScreenPpi) origin.pixels_per_inch = ppi;
-    if (!made_) made_ = provenance_of(scenes, panel_columns);
+    if (!made_) made_ = provenance_of(one);
     Provenance made = *made_;
     // A still of a frame has the bytes of the frame, whose number is elsewhere in the record.
-    const bool blurs_so = std::all_of(scenes.begin(), scenes.end(), [this](const Scene& one) {
-        return shutter_of(one) == one.video.shutter;
-    });
-    const bool is_frame = origin.command == "still" && origin.times.front().frame && blurs_so &&
-                          origin.film_times_s.empty() && !origin.pixels_per_inch;
+    const bool is_frame = origin.command == "still" && origin.times.front().frame &&
+                          shutter_of(one) == one.video.shutter && origin.film_times_s.empty() &&
+                          !origin.pixels_per_inch;
     if (!is_frame) made.picture = std::move(origin);
-    const std::string name = scenes.size() == 1 ? scenes.front().name : made.name;
-    PngInfo info = picture_info(name, times_text, frames, provenance_text(std::move(made)));
+    PngInfo info = picture_info(one.name, times_text, frames, provenance_text(std::move(made)));
     info.pixels_per_inch = ppi;
     return info;
 }
 
-ExitCode FigureOptions::write_one(const Console& console, const std::vector<Scene>& scenes,
-                                  const std::vector<RequestedTime>& some,
-                                  const std::vector<FigureDef>& defs) const {
+ExitCode FigureOptions::write_one(const Console& console, const Scene& one,
+                                  const std::vector<RequestedTime>& some, const FigureDef& def) const {
     if (!is_figure_path(output))
         throw_usage("-o {}: is one picture, .png, .svg or .pdf; give such a name", output);
     check_output(output, scene.input(), force);
-    const bool is_sheet = defs.front().columns > 0;
-    std::vector<Scene> wholes = scenes;
-    for (std::size_t i = 0; is_sheet && i < scenes.size(); ++i) {
-        wholes[i].video.width_px = defs[i].width_px;
-        wholes[i].video.height_px = defs[i].height_px;
+    const bool is_sheet = def.columns > 0;
+    Scene whole = one;
+    if (is_sheet) {
+        whole.video.width_px = def.width_px;
+        whole.video.height_px = def.height_px;
     }
-    const VideoDef whole = panels_video(wholes, panel_columns);
-    const PictureOrigin origin{.command = is_sheet ? "sheet" : "strobe", .columns = defs.front().columns};
-    std::vector<Film> films = films_of(console, scenes, some);
+    const PictureOrigin origin{.command = is_sheet ? "sheet" : "strobe", .columns = def.columns};
+    Film film = film_of(console, one, some);
     EmptyPictures empties = empty;
     if (!dry_run) {
-        if (output.ends_with(".png")) report_gl(console, films.front().gl());
-        const auto empty_s = write_figure(output, films, panel_columns, defs,
-                                          png_info(wholes, some, origin, film_times(some)), {.force = force});
-        empties.count = std::min(std::ssize(empty_s), is_sheet ? std::ssize(some) : 1);
+        if (output.ends_with(".png")) report_gl(console, film.gl());
+        const auto empty_s = write_figure(output, film, def, png_info(whole, some, origin, film_times(some)),
+                                          {.force = force});
+        empties.count = std::ssize(empty_s);
         if (!empty_s.empty()) empties.first_s = empty_s.front();
-        for (const Film& film : films) warn_of_branch(console, film);
+        warn_of_branch(console, film);
         console.result(output);
     } else {
         console.info(fmt::format("would write {}", output));
     }
-    nlohmann::json json = films_json(films);
-    std::vector<double> times_s;
-    for (const RequestedTime& time : some) times_s.push_back(time.time_s);
-    json["outputs"] = {{{"path", output}, {"times_s", times_s}}};
-    json["width"] = whole.width_px;
-    json["height"] = whole.height_px;
+    nlohmann::json json = film_json(film);
+    json["outputs"] = {{{"path", output}, {"times_s", times_of(some)}}};
+    json["width"] = whole.video.width_px;
+    json["height"] = whole.video.height_px;
     json["empty"] = empties.count;
     console.report(json);
-    return empties.report(console, is_sheet ? std::ssize(some) : 1, scenes.front().camera);
+    return empties.report(console, is_sheet ? std::ssize(some) : 1, one.camera);
 }
 
 struct Still : RequestedTime {
@@ -299,13 +263,9 @@ std::string name_of(const RequestedTime& time, const std::string& scene) {
     return name + ".png";
 }
 
-std::vector<Still> list_stills(const std::vector<RequestedTime>& times, const std::vector<Scene>& scenes,
-                               int columns) {
-    std::string name = scenes.front().name;
-    if (scenes.size() > 1)
-        name += fmt::format("_{}x{}", columns, scenes.size() / static_cast<std::size_t>(columns));
+std::vector<Still> list_stills(const std::vector<RequestedTime>& times, const Scene& scene) {
     std::vector<Still> stills;
-    for (const RequestedTime& time : times) stills.push_back({time, name_of(time, name)});
+    for (const RequestedTime& time : times) stills.push_back({time, name_of(time, scene.name)});
     const auto same = std::ranges::adjacent_find(stills, {}, &Still::path);
     if (same != stills.end()) throw_usage("two stills would both be {}; ask for each time once", same->path);
     return stills;
@@ -332,22 +292,18 @@ void set_paths(const FigureOptions& options, std::vector<Still>& stills) {
 
 /// Draws and writes the stills, and counts the empty ones. If interrupted, the message says how many were
 /// written.
-void write_each(const std::vector<Still>& stills, const std::vector<Scene>& scenes,
-                const FigureOptions& options, std::vector<Film>& films, EmptyPictures& empty) {
+void write_each(const std::vector<Still>& stills, const FigureOptions& options, Film& film,
+                EmptyPictures& empty) {
     std::size_t written = 0;
+    const Scene& scene = film.scene();
     const std::vector<double> stills_s = options.film_times({stills.begin(), stills.end()});
+    const PictureOrigin origin{.command = "still", .shutter = options.shutter_of(scene)};
     try {
         for (const Still& still : stills) {
             check_cancelled();
-            std::vector<FigureDef> defs;
-            for (const Scene& scene : scenes) {
-                defs.push_back(options.figure_of(scene, {still}));
-                defs.back().shutter = options.shutter_of(scene);
-            }
-            const PictureOrigin origin{.command = "still", .shutter = defs.front().shutter};
             const auto empty_s =
-                write_figure(still.path, films, options.panel_columns, defs,
-                             options.png_info(scenes, {still}, origin, stills_s), {.force = options.force});
+                write_figure(still.path, film, {.times_s = {still.time_s}, .shutter = origin.shutter},
+                             options.png_info(scene, {still}, origin, stills_s), {.force = options.force});
             ++written;
             if (!empty_s.empty() && empty.count++ == 0) empty.first_s = still.time_s;
         }
@@ -360,44 +316,38 @@ void write_each(const std::vector<Still>& stills, const std::vector<Scene>& scen
 
 ExitCode write_stills(const Console& console, FigureOptions options) {
     options.take_origin(console, "still");
-    const std::vector<Scene> scenes = options.load(console);
-    const VideoDef whole = panels_video(scenes, options.panel_columns);
-    const std::vector<RequestedTime> times = options.list(scenes);
-    std::vector<Still> stills = list_stills(times, scenes, options.panel_columns);
+    const Scene scene = options.load(console);
+    const std::vector<RequestedTime> times = options.times.list(scene);
+    std::vector<Still> stills = list_stills(times, scene);
     set_paths(options, stills);
-    std::vector<Film> films = options.films_of(console, scenes, times);
+    Film film = options.film_of(console, scene, times);
     EmptyPictures empty = options.empty;
     if (!options.dry_run) {
-        if (stills.front().path.ends_with(".png")) report_gl(console, films.front().gl());
-        write_each(stills, scenes, options, films, empty);
-        for (const Film& film : films) warn_of_branch(console, film);
+        if (stills.front().path.ends_with(".png")) report_gl(console, film.gl());
+        write_each(stills, options, film, empty);
+        warn_of_branch(console, film);
     }
-    nlohmann::json json = films_json(films);
+    nlohmann::json json = film_json(film);
     json["outputs"] = nlohmann::json::array();
     for (const Still& still : stills) {
         if (options.dry_run) console.info(fmt::format("would write {}", still.path));
         if (!options.dry_run) console.result(still.path);
         json["outputs"].push_back({{"path", still.path}, {"time_s", still.time_s}});
     }
-    json["width"] = whole.width_px;
-    json["height"] = whole.height_px;
+    json["width"] = scene.video.width_px;
+    json["height"] = scene.video.height_px;
     json["empty"] = empty.count;
     console.report(json);
-    return empty.report(console, std::ssize(stills), scenes.front().camera);
+    return empty.report(console, std::ssize(stills), scene.camera);
 }
 
 ExitCode write_strobe(const Console& console, FigureOptions options) {
     options.take_origin(console, "strobe");
-    const std::vector<Scene> scenes = options.load(console);
-    std::vector<RequestedTime> times = options.list(scenes);
+    const Scene scene = options.load(console);
+    std::vector<RequestedTime> times = options.times.list(scene);
     const auto is_same = [](const RequestedTime& a, const RequestedTime& b) { return a.time_s == b.time_s; };
     times.erase(std::unique(times.begin(), times.end(), is_same), times.end());
-    std::vector<FigureDef> defs;
-    for (const Scene& scene : scenes) {
-        std::vector<double>& times_s = defs.emplace_back(options.figure_of(scene, times)).times_s;
-        times_s.erase(std::unique(times_s.begin(), times_s.end()), times_s.end());  // one pose, one label
-    }
-    return options.write_one(console, scenes, times, defs);
+    return options.write_one(console, scene, times, {.times_s = times_of(times)});
 }
 
 struct SheetOptions : FigureOptions {
@@ -407,14 +357,10 @@ struct SheetOptions : FigureOptions {
 ExitCode write_sheet(const Console& console, SheetOptions options) {
     options.take_origin(console, "sheet");
     if (options.columns == 0) options.columns = options.columns_of_origin;
-    std::vector<Scene> scenes = options.load(console);
-    const std::vector<RequestedTime> times = options.list(scenes);
-    std::vector<FigureDef> defs;
-    for (Scene& scene : scenes) {
-        defs.push_back(contact_sheet(scene, options.figure_of(scene, times).times_s, options.columns));
-        options.columns = defs.front().columns;
-    }
-    return options.write_one(console, scenes, times, defs);
+    Scene scene = options.load(console);
+    const std::vector<RequestedTime> times = options.times.list(scene);
+    const FigureDef def = contact_sheet(scene, times_of(times), options.columns);
+    return options.write_one(console, scene, times, def);
 }
 
 }  // namespace

@@ -138,14 +138,4 @@ nlohmann::json film_json(Film& film) {
     return json;
 }
 
-nlohmann::json films_json(std::vector<Film>& films) {
-    if (films.size() == 1) return film_json(films.front());
-    nlohmann::json json{{"schema", 1}, {"panels", nlohmann::json::array()}};
-    for (Film& film : films) {
-        json["panels"].push_back(film_json(film));
-        json["panels"].back()["scene"] = film.scene().name;
-    }
-    return json;
-}
-
 }  // namespace corda::app

@@ -22,8 +22,8 @@
 #include "corda/media/format/format.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/film_renderer.hpp"
-#include "corda/pipeline/panels.hpp"
 #include "corda/pipeline/plan_text.hpp"
+#include "corda/view/colors.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -92,9 +92,9 @@ std::string words_of_interruption(const RenderOptions& options, std::int64_t fir
                         : done;
 }
 
-nlohmann::json report(std::vector<Film>& films, const VideoDef& video, const RenderOptions& options,
+nlohmann::json report(Film& film, const VideoDef& video, const RenderOptions& options,
                       const Rendered& rendered, double wall_s, const std::string& gl_renderer) {
-    nlohmann::json json = films_json(films);
+    nlohmann::json json = film_json(film);
     json["output"] = options.output;
     json["frames"] = rendered.frames;
     json["resumed_frames"] = rendered.resumed_frames;
@@ -128,14 +128,14 @@ std::string endings_text() {
 }
 
 /// Warns if the output format falls back from its default, loses transparency or may fill the disk.
-void report_format(const Console& console, const std::vector<Scene>& scenes, const CheckedOutput& output) {
+void report_format(const Console& console, const Scene& scene, const CheckedOutput& output) {
     const media::Format& format = output.video().format;
     if (format.is_fallback) {
         console.warning(fmt::format("{}, the default of {}, is not available: encoding with {} ({})",
                                     format.ending->codecs.front(), format.ending->text, format.codec->name,
                                     format.codec->standard));
     }
-    if (!pipeline::are_opaque(scenes) && std::string_view(format.ending->muxer) == "gif")
+    if (!view::look_of(scene.style).ground.is_opaque() && std::string_view(format.ending->muxer) == "gif")
         console.warning(
             "a GIF has no half transparent pixels: edges will be hard; .webp and .apng keep them");
     const std::string warning =
@@ -198,23 +198,18 @@ void check_adjacent_pictures(const VideoDef& video, const std::string& output, s
     }
 }
 
-/// Simulates the scenes, and reports their plans.
-std::vector<Film> make_films(const Console& console, const std::vector<Scene>& scenes,
-                             const CheckedOutput& output, const FilmDef& def) {
-    const std::int64_t count = output.end() - output.first();
-    std::vector<Film> films;
-    for (const Scene& scene : scenes) {
-        Film& film = films.emplace_back(scene, def);
-        report_plan(console, film);
-        const VideoDef& video = film.scene().video;
-        console.info(fmt::format("{}: {}, method {}; {} of {}x{} at {} per second{}", film.scene().name,
-                                 system_text(film.system()), method_names(film.plan()),
-                                 counted(scenes.size() > 1 ? film.frame_count() : count, "frame"),
-                                 video.width_px, video.height_px, video.fps.rational().text(),
-                                 video.speed == Rational{1, 1} ? "" : ", at speed " + video.speed.text()));
-        warn_of_room(console, film);
-    }
-    return films;
+/// Simulates the scene, and reports its plan.
+Film make_film(const Console& console, const Scene& scene, const CheckedOutput& output, const FilmDef& def) {
+    Film film(scene, def);
+    report_plan(console, film);
+    const VideoDef& video = scene.video;
+    console.info(fmt::format("{}: {}, method {}; {} of {}x{} at {} per second{}", scene.name,
+                             system_text(film.system()), method_names(film.plan()),
+                             counted(output.end() - output.first(), "frame"), video.width_px, video.height_px,
+                             video.fps.rational().text(),
+                             video.speed == Rational{1, 1} ? "" : ", at speed " + video.speed.text()));
+    warn_of_room(console, film);
+    return film;
 }
 
 RenderDef render_def(const Console& console, const RenderOptions& options) {
@@ -229,40 +224,37 @@ RenderDef render_def(const Console& console, const RenderOptions& options) {
 
 ExitCode render(const Console& console, const RenderOptions& options) {
     const double start_s = now_s();
-    const int columns = options.scene.columns(console);
-    const std::vector<Scene> scenes = options.scene.load_panels(console, [&](VideoDef& whole) {
-        if (!options.pad) return false;
-        whole.width_px += whole.width_px % 2;
-        whole.height_px += whole.height_px % 2;
-        return true;
-    });
+    Scene scene = options.scene.load(console);
+    if (options.pad) {
+        scene.video.width_px += scene.video.width_px % 2;
+        scene.video.height_px += scene.video.height_px % 2;
+    }
     const RenderDef def = render_def(console, options);
     check_standard_output(console, options.output);
-    const CheckedOutput output = check_render(scenes, columns, options.output, def, options.scene.input());
+    const CheckedOutput output = check_render(scene, options.output, def, options.scene.input());
     const VideoDef& video = output.video().def;
     if (!options.frames.empty() && !options.force)
         check_adjacent_pictures(video, options.output, output.first(), output.end());
-    report_format(console, scenes, output);
+    report_format(console, scene, output);
     OnProgress on_progress = show_progress(console, "simulate");
     FilmDef film_def;
     film_def.on_progress = [&](std::int64_t done, std::int64_t all) {
         return !on_progress || on_progress(done, all);
     };
     options.gl.apply_to(film_def);
-    film_def.motion_budget_bytes /= scenes.size();
-    std::vector<Film> films = make_films(console, scenes, output, film_def);
+    Film film = make_film(console, scene, output, film_def);
     if (options.dry_run) {
-        console.report(films_json(films));
+        console.report(film_json(film));
         return ExitCode::kOk;
     }
 
     const std::int64_t count = output.end() - output.first();
-    const GlInfo gl = films.front().gl();
+    const GlInfo gl = film.gl();
     report_gl(console, gl);
     on_progress = {};  // from now on, simulation shows as frames that are drawn
     std::optional<Progress> progress(std::in_place, console, "render", count);
     if (is_one_file(options.output)) keep_words_of_parts(media::parts_path(options.output));
-    const Rendered rendered = render_video(films, output, [&](std::int64_t done, std::int64_t total) {
+    const Rendered rendered = render_video(film, output, [&](std::int64_t done, std::int64_t total) {
         progress->update(total > 0 ? done * count / total : done);
         return interruption() == ExitCode::kOk;
     });
@@ -272,19 +264,13 @@ ExitCode render(const Console& console, const RenderOptions& options) {
         throw Error(interruption(), words_of_interruption(options, output.first(), count, rendered));
     const double wall_s = now_s() - start_s;
     report_rendered(console, is_one_file(options.output) && !def.shard, rendered, wall_s);
-    for (const Film& film : films) warn_of_branch(console, film);
+    warn_of_branch(console, film);
     if (!def.end) warn_of_other_pictures(console, options.output, output.end());
     if (!is_standard_output(options.output))
         console.result(def.shard ? media::parts_path(options.output) : options.output);
-    console.report(report(films, video, options, rendered, wall_s, gl.renderer));
+    console.report(report(film, video, options, rendered, wall_s, gl.renderer));
     const EmptyPictures empty{options.empty.are_failures, rendered.empty_frames, rendered.first_empty_s};
-    const std::int64_t k = films.front().scene().video.scene_rate().last_frame_within(rendered.first_empty_s);
-    const auto is_empty = [k](Film& film) {
-        return FilmRenderer::is_empty(film, film.time_s(std::min(k, film.frame_count() - 1)));
-    };
-    const auto shown = rendered.empty_frames > 0 ? std::ranges::find_if(films, is_empty) : films.end();
-    return empty.report(console, rendered.frames,
-                        (shown == films.end() ? films.front() : *shown).scene().camera);
+    return empty.report(console, rendered.frames, film.scene().camera);
 }
 
 }  // namespace

@@ -200,78 +200,34 @@ std::string ending_of(const std::string& path) {
     return std::filesystem::path(path).extension().string();
 }
 
-/// A figure among several side by side.
-struct Panel {
-    Film& film;
-    const FigureDef& def;
-    int x_px = 0;
-    int y_px = 0;
-};
-
-/// Places figures row by row, and finds the size of all.
-std::vector<Panel> place(std::span<Film> films, int columns, std::span<const FigureDef> defs,
-                         VideoDef& whole) {
-    if (defs.size() != films.size())
-        throw_usage("{} figures of {} films; define one of each", defs.size(), films.size());
-    std::vector<Scene> sizes(films.size());
-    for (std::size_t i = 0; i < films.size(); ++i) {
-        check(films[i], defs[i]);
-        sizes[i].name = films[i].scene().name;
-        sizes[i].video = films[i].scene().video;
-        if (defs[i].columns == 0) continue;
-        sizes[i].video.width_px = defs[i].width_px;
-        sizes[i].video.height_px = defs[i].height_px;
-    }
-    whole = panels_video(sizes, columns);
-    std::vector<Panel> panels;
-    int x = 0;
-    int y = 0;
-    for (std::size_t i = 0; i < films.size(); ++i) {
-        panels.push_back({films[i], defs[i], x, y});
-        x = (x + sizes[i].video.width_px) % whole.width_px;
-        if (x == 0) y += sizes[i].video.height_px;
-    }
-    return panels;
-}
-
-Image draw(std::span<const Panel> panels, const VideoDef& whole, std::vector<double>& empty_s) {
-    if (panels.size() == 1) return draw(panels[0].film, panels[0].def, empty_s);
-    Image image(whole.width_px, whole.height_px);
-    for (const Panel& panel : panels) {
-        const Image part = draw(panel.film, panel.def, empty_s);
-        for (int row = 0; row < part.height(); ++row)
-            std::copy_n(part.pixel(0, row), part.row_bytes(), image.pixel(panel.x_px, panel.y_px + row));
-    }
-    return image;
-}
-
-void draw_lines(const Panel& panel, const std::string& ending, render::VectorPage& page,
-                std::vector<double>& empty_s) {
-    const FigureDef& def = panel.def;
-    if (def.shutter != 0.0) throw_usage("a shutter and {}: lines cannot be blurred; draw a .png", ending);
+void draw_lines(Film& film, const FigureDef& def, render::VectorPage& page, std::vector<double>& empty_s) {
     const auto add = [&](std::span<const double> times_s, int x, int y) {
-        const view::DrawList list = FilmRenderer::list_poses(panel.film, times_s);
+        const view::DrawList list = FilmRenderer::list_poses(film, times_s);
         if (list.shows_nothing()) empty_s.push_back(times_s.front());
-        page.draw(list, panel.x_px + x, panel.y_px + y);
+        page.draw(list, x, y);
     };
     if (def.columns > 0) {
-        page.draw(list_captions(panel.film, def), panel.x_px, panel.y_px);
-        for_each_cell(panel.film, def, [&](double time_s, int x, int y) { add({&time_s, 1}, x, y); });
+        page.draw(list_captions(film, def), 0, 0);
+        for_each_cell(film, def, [&](double time_s, int x, int y) { add({&time_s, 1}, x, y); });
     } else {
         add(def.times_s, 0, 0);
     }
 }
 
 /// The bytes of an SVG or a PDF.
-std::string vector_bytes(const std::string& ending, std::span<const Panel> panels, const VideoDef& whole,
-                         const PngInfo& info, std::vector<double>& empty_s) {
-    render::PageDef page_def{.width_px = whole.width_px, .height_px = whole.height_px};
+std::string vector_bytes(const std::string& ending, Film& film, const FigureDef& def, const PngInfo& info,
+                         std::vector<double>& empty_s) {
+    check(film, def);
+    if (def.shutter != 0.0) throw_usage("a shutter and {}: lines cannot be blurred; draw a .png", ending);
+    const VideoDef& video = film.scene().video;
+    render::PageDef page_def{.width_px = def.columns > 0 ? def.width_px : video.width_px,
+                             .height_px = def.columns > 0 ? def.height_px : video.height_px};
     page_def.width_mm = page_def.width_px * kMmPerInch / info.pixels_per_inch;
     for (const auto& [keyword, text] : info.text) {
         if (keyword == "Title") page_def.title = utf8(text);
     }
     const auto page = ending == ".svg" ? render::make_svg(page_def) : render::make_pdf(page_def);
-    for (const Panel& panel : panels) draw_lines(panel, ending, *page, empty_s);
+    draw_lines(film, def, *page, empty_s);
     return page->finish();
 }
 
@@ -310,26 +266,14 @@ bool is_figure_path(const std::string& path) {
 
 std::vector<double> write_figure(const std::string& path, Film& film, const FigureDef& def,
                                  const PngInfo& info, const OutputOptions& options) {
-    return write_figure(path, {&film, 1}, 1, {&def, 1}, info, options);
-}
-
-std::vector<double> write_figure(const std::string& path, std::span<Film> panels, int columns,
-                                 std::span<const FigureDef> defs, const PngInfo& info,
-                                 const OutputOptions& options) {
     if (!is_figure_path(path))
         throw_usage("'{}': figures are written as .png, .svg or .pdf; give such a name", path);
-    VideoDef whole;
     std::vector<double> empty_s;
-    const std::vector<Panel> placed = place(panels, columns, defs, whole);
     const std::string ending = ending_of(path);
     if (ending == ".png")
-        write_png(path, draw(placed, whole, empty_s), info, options);
+        write_png(path, draw(film, def, empty_s), info, options);
     else
-        save_file(path, vector_bytes(ending, placed, whole, info, empty_s), options);
-    if (panels.size() > 1) {
-        std::ranges::sort(empty_s);
-        empty_s.erase(std::unique(empty_s.begin(), empty_s.end()), empty_s.end());
-    }
+        save_file(path, vector_bytes(ending, film, def, info, empty_s), options);
     return empty_s;
 }
 

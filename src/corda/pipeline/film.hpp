@@ -202,17 +202,6 @@ struct Rendered {
     std::string left_out{};           ///< why a file that can carry its scenes does not; empty: it does
 };
 
-/// The most scenes in one video.
-inline constexpr std::size_t kMaxPanels = 64;
-
-/// Gives scenes that are shown side by side, row by row, their shares of a picture of this size. Edges
-/// between panels are at even pixels. Throws corda::Error (kUsage) if they fill no grid or have no room.
-void lay_out_panels(std::span<Scene> scenes, int columns, int width_px, int height_px);
-
-/// The video that shows such scenes: that of the first one, in the size of all. Throws corda::Error (kUsage)
-/// if the sizes form no grid, or the frame rates differ.
-[[nodiscard]] VideoDef panels_video(std::span<const Scene> scenes, int columns);
-
 namespace media {
 struct CheckedVideo;
 }
@@ -225,18 +214,15 @@ class CheckedOutput {
     [[nodiscard]] std::int64_t first() const;
     [[nodiscard]] std::int64_t end() const;
     [[nodiscard]] bool verifies_all() const { return verify_all_; }
-    /// Of panels; 1 of a single scene.
-    [[nodiscard]] int columns() const { return columns_; }
     /// Format and codec; for this library's own use.
     [[nodiscard]] const media::CheckedVideo& video() const { return *video_; }
 
   private:
-    friend CheckedOutput check_render(std::span<const Scene> panels, int columns, const std::string& path,
-                                      const RenderDef& def, const std::string& input);
-    CheckedOutput(media::CheckedVideo video, int columns, bool verify_all);
+    friend CheckedOutput check_render(const Scene& scene, const std::string& path, const RenderDef& def,
+                                      const std::string& input);
+    CheckedOutput(media::CheckedVideo video, bool verify_all);
 
     std::shared_ptr<const media::CheckedVideo> video_;
-    int columns_;
     bool verify_all_;
 };
 
@@ -247,24 +233,15 @@ class CheckedOutput {
 [[nodiscard]] CheckedOutput check_render(const Scene& scene, const std::string& path,
                                          const RenderDef& def = {}, const std::string& input = {});
 
-/// The same for scenes side by side (see lay_out_panels()) with one clock: frame k shows frame k of each, or
-/// its last one if it has ended.
-[[nodiscard]] CheckedOutput check_render(std::span<const Scene> panels, int columns, const std::string& path,
-                                         const RenderDef& def = {}, const std::string& input = {});
-
 /// Draws, encodes, verifies and names a video of a film whose scene was checked. Calls `on_progress` as
 /// RenderDef describes. Throws corda::Error: kUsage for a film of another size or rate, kEncoder, kNoGl, kIo,
 /// kDiverged (the frames before the divergence are kept; the message names their file).
 Rendered render_video(Film& film, const CheckedOutput& output, const OnProgress& on_progress = {});
 
-/// The same for the films of the scenes that were checked, in their order.
-Rendered render_video(std::span<Film> panels, const CheckedOutput& output,
-                      const OnProgress& on_progress = {});
-
 /// Checks the output, then renders it; the ending of `path` chooses the format.
 Rendered render_video(Film& film, const std::string& path, const RenderDef& def = {});
 
-/// Poses of a film at several times, in one picture or side by side.
+/// Poses of a film at several times.
 struct FigureDef {
     /// In seconds, increasing, at least one; 0 .. world.duration_s.
     std::vector<double> times_s;
@@ -295,12 +272,6 @@ struct FigureDef {
 /// draw_figure(), kIo, and kUsage for another ending.
 std::vector<double> write_figure(const std::string& path, Film& film, const FigureDef& def,
                                  const PngInfo& info = {}, const OutputOptions& options = {});
-
-/// The same of films side by side (see lay_out_panels()), each as a figure of its own. Returns the times
-/// at which one is empty. Throws kUsage if their sizes form no grid.
-std::vector<double> write_figure(const std::string& path, std::span<Film> panels, int columns,
-                                 std::span<const FigureDef> defs, const PngInfo& info = {},
-                                 const OutputOptions& options = {});
 
 }  // namespace corda
 #pragma GCC visibility pop

@@ -148,17 +148,11 @@ Provenance parsed(const Json& json) {
         provenance.fonts.push_back(printable(font.get<std::string>()));
     if (json.contains("picture")) provenance.picture = picture_of(json["picture"]);
     if (json.contains("golden")) provenance.golden = golden_of(json["golden"]);
-    provenance.columns = json.value("columns", 0);
     for (const Json& part : json.value("parts", Json::array())) {
         provenance.parts.push_back(parsed(part));
         std::string& left_out = provenance.parts.back().left_out;
         if (left_out.empty()) left_out = provenance.left_out;
     }
-    const std::size_t panels = provenance.parts.size();
-    const int columns = provenance.columns;
-    if (columns < 0 || (columns > 0 && (panels == 0 || panels > kMaxPanels ||
-                                        panels % static_cast<std::size_t>(columns) != 0)))
-        throw Error(ExitCode::kUsage, "its panels are not what corda writes");
     if (!is_sound_name(provenance.name)) throw Error(ExitCode::kUsage, "its name is none of a scene");
     return provenance;
 }
@@ -212,7 +206,6 @@ Json json_of(const Provenance& provenance) {
     if (provenance.picture) json["picture"] = json_of(*provenance.picture);
     if (provenance.golden) json["golden"] = json_of(*provenance.golden);
     for (const Provenance& part : provenance.parts) json["parts"].push_back(json_of(part));
-    if (provenance.columns > 0) json["columns"] = provenance.columns;
     return json;
 }
 
@@ -226,10 +219,10 @@ std::string shortened(std::string text, std::size_t bytes) {
 }
 
 /// The names of parts as a sound name.
-std::string names_of(const std::vector<Provenance>& parts, const char* separator) {
+std::string names_of(const std::vector<Provenance>& parts) {
     std::string names;
     for (const Provenance& part : parts) {
-        names += (names.empty() ? "" : separator) + part.name;
+        names += (names.empty() ? "" : ", ") + part.name;
         if (names.size() > kMaxName) break;
     }
     return shortened(std::move(names), kMaxName);
@@ -239,7 +232,7 @@ std::string names_of(const std::vector<Provenance>& parts, const char* separator
 void check_scene(const Provenance& provenance, const std::string& path) {
     if (!provenance.parts.empty())
         throw_usage("'{}' has several scenes ({}); give one of the videos that it was joined of", path,
-                    printable(names_of(provenance.parts, ", ")));
+                    printable(names_of(provenance.parts)));
     if (!provenance.scene.empty()) return;
     fail_at(path,
             fmt::format("does not carry its scene, because {}",
@@ -305,23 +298,15 @@ Provenance provenance_of(const Scene& scene) {
     return provenance;
 }
 
-Provenance provenance_of(std::span<const Scene> panels, int columns) {
-    if (panels.size() == 1) return provenance_of(panels.front());
-    std::vector<Provenance> parts;
-    for (const Scene& scene : panels) parts.push_back(provenance_of(scene));
-    return {
-        .corda = std::string(version()), .name = names_of(parts, " | "), .parts = parts, .columns = columns};
-}
-
 Provenance joined(const std::vector<Provenance>& videos) {
     std::vector<Provenance> parts;
     for (const Provenance& video : videos) {
-        if (video.parts.empty() || video.columns > 0)
+        if (video.parts.empty())
             parts.push_back(video);
         else
             parts.insert(parts.end(), video.parts.begin(), video.parts.end());
     }
-    return {.corda = std::string(version()), .name = names_of(parts, ", "), .parts = parts};
+    return {.corda = std::string(version()), .name = names_of(parts), .parts = parts};
 }
 
 std::string provenance_text(Provenance provenance) {
@@ -360,7 +345,6 @@ std::string provenance_text(Provenance provenance) {
         provenance.left_out = fmt::format("the names of {} scenes take {} bytes, more than {}",
                                           provenance.parts.size(), text.size(), Provenance::kMaxBytes);
         provenance.parts.clear();
-        provenance.columns = 0;
     }
     return text_of(json_of(provenance));
 }

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -66,8 +65,7 @@ struct Provenance {
     std::string frames = {};  ///< of a video or a sequence of pictures: "FIRST:END"
     std::optional<PictureOrigin> picture = {};
     std::optional<GoldenRecord> golden = {};  ///< of a picture that `corda golden` keeps
-    std::vector<Provenance> parts = {};       ///< of a video of several scenes
-    int columns = 0;                          ///< of parts that are side by side; 0: they were joined
+    std::vector<Provenance> parts = {};       ///< of a video that was joined
 };
 
 /// The keyword of the text in a PNG, and the key in the comment of a video.
@@ -77,9 +75,6 @@ inline constexpr const char* kProvenanceKey = "provenance";
 /// The provenance of a file that this version makes from `scene`: without the scene if that takes too much
 /// space or code alone can say it. No folder, host or date is part of it.
 [[nodiscard]] Provenance provenance_of(const Scene& scene);
-
-/// The same of scenes side by side.
-[[nodiscard]] Provenance provenance_of(std::span<const Scene> panels, int columns);
 
 /// The provenance of videos that were joined. Parts of a joined one become its own.
 [[nodiscard]] Provenance joined(const std::vector<Provenance>& videos);

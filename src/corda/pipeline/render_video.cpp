@@ -3,7 +3,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -24,7 +23,6 @@
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "corda/pipeline/motion_input.hpp"
-#include "corda/pipeline/panels.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/pipeline/provenance.hpp"
 #include "corda/scene/write_scene.hpp"
@@ -35,27 +33,14 @@ namespace {
 
 constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
 
+bool is_opaque(const Scene& scene) {
+    return view::look_of(scene.style).ground.is_opaque();
+}
+
 /// Everything that determines the bytes of a video, by key.
-std::map<std::string, std::string> origin_of(std::span<const Scene> panels, int columns,
-                                             const media::Format& format, std::int64_t first,
-                                             std::int64_t end) {
-    std::map<std::string, std::string> origin = digest(panels.front());
-    std::size_t room = std::size_t{16} << 10;  // chunks tell at most 64 KiB
-    for (std::size_t i = 1; i < panels.size(); ++i) {
-        std::map<std::string, std::string> of_panel;
-        std::string text;
-        for (const auto& [key, value] : digest(panels[i])) {
-            of_panel[fmt::format("panel {}: {}", i, key)] = value;
-            text += fmt::format("panel {}: {} = {}\n", i, key, value);
-        }
-        const bool has_room = text.size() <= room;
-        if (has_room)
-            origin.merge(of_panel);
-        else
-            origin[fmt::format("panel {}", i)] = hashed(text);
-        room -= has_room ? text.size() : 0;
-    }
-    if (panels.size() > 1) origin["panels"] = fmt::format("{} in {} columns", panels.size(), columns);
+std::map<std::string, std::string> origin_of(const Scene& scene, const media::Format& format,
+                                             std::int64_t first, std::int64_t end) {
+    std::map<std::string, std::string> origin = digest(scene);
     origin["corda"] = version();
     origin["encoder"] = format.encoder_name();
     origin["libraries"] = format.library_versions();
@@ -77,27 +62,25 @@ void check_chunks(const std::string& path, const std::map<std::string, std::stri
 }
 
 /// Title, comment and provenance of the file.
-media::VideoMetadata metadata(const pipeline::Panels& panels, std::int64_t first, std::int64_t end,
+media::VideoMetadata metadata(Film& film, std::int64_t first, std::int64_t end,
                               const std::map<std::string, std::string>& origin) {
-    Provenance made = provenance_of(panels.scenes, panels.columns);
-    const bool is_one = panels.films.size() == 1;
+    const Scene& scene = film.scene();
+    Provenance made = provenance_of(scene);
     const std::string title = made.name;
-    nlohmann::json comment = {{"corda", version()}, {"scene", title}, {"first_frame", first}};
-    if (is_one) {
-        Film& film = panels.films.front();
-        comment["method"] = method_names(film.plan());
-        comment["error_bound_m"] = or_null(film.plan().error_bound_m);
-        comment["error_bound_px"] = or_null(film.error_bound_px());
-        comment["horizon_s"] = or_null(film.plan().horizon_s);
-    }
+    nlohmann::json comment = {{"corda", version()},
+                              {"scene", title},
+                              {"first_frame", first},
+                              {"method", method_names(film.plan())},
+                              {"error_bound_m", or_null(film.plan().error_bound_m)},
+                              {"error_bound_px", or_null(film.error_bound_px())},
+                              {"horizon_s", or_null(film.plan().horizon_s)}};
     // Without the range of frames, so that a picture has the bytes of the still.
     const std::string of_picture = provenance_text(made);
     made.frames = fmt::format("{}:{}", first, end);
     const std::string provenance = provenance_text(std::move(made));
     comment[kProvenanceKey] = nlohmann::json::parse(provenance);
-    return {title, comment.dump(), !pipeline::are_opaque(panels.scenes),
-            [name = is_one ? panels.scenes.front().name : title, rate = panels.video.scene_rate(),
-             of_picture](std::int64_t frame) {
+    return {title, comment.dump(), !is_opaque(scene),
+            [name = scene.name, rate = scene.video.scene_rate(), of_picture](std::int64_t frame) {
                 return picture_info(name, fmt::format("{}", rate.time_s(frame)), std::to_string(frame),
                                     of_picture);
             },
@@ -105,8 +88,8 @@ media::VideoMetadata metadata(const pipeline::Panels& panels, std::int64_t first
 }
 
 /// Refuses a video for which memory does not suffice, before the system kills a process.
-void check_memory(const media::Format& format, const VideoDef& video, std::size_t panels) {
-    const std::uint64_t bytes = media::bytes_per_job(format, video, panels);
+void check_memory(const media::Format& format, const VideoDef& video) {
+    const std::uint64_t bytes = media::bytes_per_job(format, video);
     if (media::jobs_that_fit(1, bytes) == 1) return;
     const bool can_be_faster =
         !format.codec->preset_job_bytes.empty() && format.preset_of(video.encoder) != "ultrafast";
@@ -151,20 +134,17 @@ media::Chunk draw_chunk(std::int64_t first, std::int64_t end, media::ChunkEncode
     return encoder.finish();
 }
 
-using pipeline::PanelRenderer;
-using pipeline::Panels;
-
 /// Draws and encodes a chunk. Counts each frame in `drawn`. Throws corda::Error (kInterrupted) if all threads
 /// are stopped.
-Made make_chunk(std::int64_t chunk, const OrderedWorkers<Made>& all, const Panels& panels,
-                const media::VideoWriter& writer, PanelRenderer& renderer, std::atomic<std::int64_t>& drawn) {
+Made make_chunk(std::int64_t chunk, const OrderedWorkers<Made>& all, const Film& film,
+                const media::VideoWriter& writer, FilmRenderer& renderer, std::atomic<std::int64_t>& drawn) {
     Made made;
     const CancelScope running([&all] { return !all.is_stopped(); });
     const std::int64_t first = writer.manifest().first_of(chunk);
     made.chunk = draw_chunk(first, writer.manifest().end_of(chunk), writer.chunk_encoder(first), renderer,
                             [&](std::int64_t k) {
-                                Damage damage = renderer.draw(k);
-                                if (renderer.shows_nothing()) note_empty(panels.time_s(k), made);
+                                Damage damage = renderer.draw(film.time_s(k));
+                                if (renderer.shows_nothing()) note_empty(film.time_s(k), made);
                                 ++drawn;
                                 return damage;
                             });
@@ -178,21 +158,20 @@ void add(Made made, media::VideoWriter& writer, Rendered& result) {
 }
 
 /// Draws and encodes the chunks that a writer lacks, several at a time, each in a thread of its own. They
-/// have the bytes that PanelRenderer and VideoWriter::write() give. Counts the empty frames in `result`.
+/// have the bytes that FilmRenderer and VideoWriter::write() give. Counts the empty frames in `result`.
 ///
 /// Calls `on_progress` in this thread only, with the number of frames drawn. Requires
-/// panels.can_draw_in_any_order(end). Throws corda::Error: kEncoder, kNoGl, kIo, and
+/// FilmRenderer::can_draw_in_any_order(film, end). Throws corda::Error: kEncoder, kNoGl, kIo, and
 /// kInterrupted if on_progress asks to stop; then the writer has the whole chunks before the first one that
 /// is not. Returns false, without any frame, if the system starts no thread.
-bool render_chunks(const Panels& panels, const std::vector<std::int64_t>& lacking, std::int64_t total,
+bool render_chunks(Film& film, const std::vector<std::int64_t>& lacking, std::int64_t total,
                    const OnProgress& on_progress, media::VideoWriter& writer, Rendered& result) {
     const std::int64_t had = writer.frames();
     std::atomic<std::int64_t> drawn = 0;
     OrderedWorkers<Made> chunks(0, std::ssize(lacking), result.jobs, [&] {
-        return [&, renderer = std::make_shared<PanelRenderer>(panels)](std::int64_t index,
-                                                                       const OrderedWorkers<Made>& all) {
-            return make_chunk(lacking[static_cast<std::size_t>(index)], all, panels, writer, *renderer,
-                              drawn);
+        return [&, renderer = std::make_shared<FilmRenderer>(film)](std::int64_t index,
+                                                                    const OrderedWorkers<Made>& all) {
+            return make_chunk(lacking[static_cast<std::size_t>(index)], all, film, writer, *renderer, drawn);
         };
     });
     if (!chunks.has_threads()) return false;
@@ -220,33 +199,32 @@ bool render_chunks(const Panels& panels, const std::vector<std::int64_t>& lackin
 }
 
 /// Draws and encodes the frames that the writer lacks. Counts all empty frames, of a shard its own.
-void write_frames(const Panels& panels, const media::CheckedVideo& video, const OnProgress& on_progress,
+void write_frames(Film& film, const media::CheckedVideo& video, const OnProgress& on_progress,
                   media::VideoWriter& writer, Rendered& result) {
     const std::vector<std::int64_t> lacking = writer.lacking_chunks();
     std::int64_t total = writer.frames();
     for (const std::int64_t chunk : lacking) total += writer.manifest().frames_of(chunk);
     const int wanted =
         static_cast<int>(std::min<std::int64_t>(media::jobs_of(video.def.encoder.jobs), std::ssize(lacking)));
-    if (wanted > 1 && panels.can_draw_in_any_order(video.end)) {
-        const int jobs = media::jobs_that_fit(
-            wanted, media::bytes_per_job(writer.format(), video.def, panels.films.size()));
+    if (wanted > 1 && FilmRenderer::can_draw_in_any_order(film, video.end)) {
+        const int jobs = media::jobs_that_fit(wanted, media::bytes_per_job(writer.format(), video.def));
         result.is_short_of_memory = jobs < wanted;
         result.jobs = std::max(1, jobs);
     }
-    const bool is_made =
-        result.jobs > 1 && render_chunks(panels, lacking, total, on_progress, writer, result);
+    const bool is_made = result.jobs > 1 && render_chunks(film, lacking, total, on_progress, writer, result);
     if (!is_made) result.jobs = 1;
     std::int64_t done = is_made ? total : writer.frames();
-    std::optional<PanelRenderer> renderer;
+    std::optional<FilmRenderer> renderer;
     const CancelScope progress([&] { report_progress(on_progress, done, total); });
     for (std::int64_t k = video.first; k < video.end; ++k) {
         check_cancelled();
         const bool is_lacking = std::ranges::binary_search(lacking, k / writer.manifest().per_chunk);
-        if (!is_lacking && !video.shard && panels.have_empty(k)) note_empty(panels.time_s(k), result);
+        const double time_s = film.time_s(k);
+        if (!is_lacking && !video.shard && FilmRenderer::is_empty(film, time_s)) note_empty(time_s, result);
         if (!is_lacking || is_made) continue;
-        if (!renderer) renderer.emplace(panels);
-        const Damage damage = renderer->draw(k);
-        if (renderer->shows_nothing()) note_empty(panels.time_s(k), result);
+        if (!renderer) renderer.emplace(film);
+        const Damage damage = renderer->draw(time_s);
+        if (renderer->shows_nothing()) note_empty(time_s, result);
         writer.write(renderer->image(), damage);
         ++done;
     }
@@ -269,31 +247,29 @@ void check_ground(const Scene& scene, const media::Format& format) {
 }
 
 /// The output of frames first <= k < end with everything checked but the encoder's start.
-media::CheckedVideo check_video(std::span<const Scene> panels, int columns, const std::string& path,
-                                const RenderDef& def, const std::string& input, std::int64_t end) {
+media::CheckedVideo check_video(const Scene& scene, const std::string& path, const RenderDef& def,
+                                const std::string& input, std::int64_t end) {
     media::CheckedVideo video = media::check_video_output({.path = path,
-                                                           .def = panels_video(panels, columns),
+                                                           .def = scene.video,
                                                            .first = def.first,
                                                            .end = end,
                                                            .force = def.force,
                                                            .resume = def.resume,
                                                            .shard = def.shard},
-                                                          input, !pipeline::are_opaque(panels));
-    for (const Scene& scene : panels) check_ground(scene, video.format);
-    check_memory(video.format, video.def, panels.size());
+                                                          input, !is_opaque(scene));
+    check_ground(scene, video.format);
+    check_memory(video.format, video.def);
     const bool continues = def.resume || def.shard;
     const std::uint64_t there = continues ? media::bytes_of(media::chunk_files(media::parts_path(path))) : 0;
     media::check_disk_space(video.format, path, video.def, end - def.first, there);
-    if (continues) check_chunks(path, origin_of(panels, columns, video.format, def.first, end));
+    if (continues) check_chunks(path, origin_of(scene, video.format, def.first, end));
     return video;
 }
 
 }  // namespace
 
-CheckedOutput::CheckedOutput(media::CheckedVideo video, int columns, bool verify_all)
-    : video_(std::make_shared<const media::CheckedVideo>(std::move(video))),
-      columns_(columns),
-      verify_all_(verify_all) {}
+CheckedOutput::CheckedOutput(media::CheckedVideo video, bool verify_all)
+    : video_(std::make_shared<const media::CheckedVideo>(std::move(video))), verify_all_(verify_all) {}
 
 const std::string& CheckedOutput::path() const {
     return video_->path;
@@ -309,16 +285,8 @@ std::int64_t CheckedOutput::end() const {
 
 CheckedOutput check_render(const Scene& scene, const std::string& path, const RenderDef& def,
                            const std::string& input) {
-    return check_render({&scene, 1}, 1, path, def, input);
-}
-
-CheckedOutput check_render(std::span<const Scene> panels, int columns, const std::string& path,
-                           const RenderDef& def, const std::string& input) {
-    std::int64_t count = 0;
-    for (const Scene& scene : panels) {
-        pipeline::validate(scene, {});
-        count = std::max(count, scene.video.scene_rate().frame_count(scene.world.duration_s));
-    }
+    pipeline::validate(scene, {});
+    const std::int64_t count = scene.video.scene_rate().frame_count(scene.world.duration_s);
     const std::int64_t end = def.end.value_or(count);
     if (def.first < 0 || def.first >= end || end > count) {
         throw_usage("frames {}:{} are not FIRST:END with 0 <= FIRST < END <= {} (END is not drawn)",
@@ -326,20 +294,15 @@ CheckedOutput check_render(std::span<const Scene> panels, int columns, const std
     }
     std::int64_t total = end - def.first;
     const CancelScope starting([&] { report_progress(def.on_progress, 0, total); });
-    media::CheckedVideo video = check_video(panels, columns, path, def, input, end);
+    media::CheckedVideo video = check_video(scene, path, def, input, end);
     total *= media::passes(*video.format.ending);
     media::check_encoder_starts(video.format, video.def);
-    return {std::move(video), columns, def.verify_all};
+    return {std::move(video), def.verify_all};
 }
 
 Rendered render_video(Film& film, const CheckedOutput& output, const OnProgress& on_progress) {
-    return render_video({&film, 1}, output, on_progress);
-}
-
-Rendered render_video(std::span<Film> films, const CheckedOutput& output, const OnProgress& on_progress) {
     const media::CheckedVideo& video = output.video();
-    const Panels panels(films, output.columns());
-    const VideoDef& shown = panels.video;
+    const VideoDef& shown = film.scene().video;
     if (shown.width_px != video.def.width_px || shown.height_px != video.def.height_px ||
         shown.fps.rational() != video.def.fps.rational()) {
         throw_usage(
@@ -348,18 +311,14 @@ Rendered render_video(std::span<Film> films, const CheckedOutput& output, const 
             video.path, video.def.width_px, video.def.height_px, video.def.fps.rational().text(),
             shown.width_px, shown.height_px, shown.fps.rational().text());
     }
-    pipeline::Nested<pipeline::SharedMotion::Activity> rendering;
-    for (Film& film : films) rendering.emplace_back(FilmRenderer::motion_of(film));
+    const pipeline::SharedMotion::Activity rendering(FilmRenderer::motion_of(film));
     const std::int64_t passes = media::passes(*video.format.ending);
-    for (Film& film : films) {  // may fail, which is to happen before a file is made
-        static_cast<void>(film.camera());
-        static_cast<void>(film.gl());
-    }
+    static_cast<void>(film.camera());  // may fail, which is to happen before a file is made
+    static_cast<void>(film.gl());
     std::optional<CancelScope> resuming(
         std::in_place, [&] { report_progress(on_progress, 0, passes * (video.end - video.first)); });
     media::VideoMetadata data =
-        metadata(panels, video.first, video.end,
-                 origin_of(panels.scenes, panels.columns, video.format, video.first, video.end));
+        metadata(film, video.first, video.end, origin_of(film.scene(), video.format, video.first, video.end));
     const nlohmann::json comment = nlohmann::json::parse(data.comment_json);
     media::VideoWriter writer(video, std::move(data));
     resuming.reset();
@@ -374,7 +333,7 @@ Rendered render_video(std::span<Film> films, const CheckedOutput& output, const 
     if (kind == media::FileKind::kVideo || kind == media::FileKind::kPictures)
         result.left_out = left_out_of(comment[kProvenanceKey].dump());
     try {
-        write_frames(panels, video, drawn, writer, result);
+        write_frames(film, video, drawn, writer, result);
         writer.finish(output.verifies_all() ? media::VerifyDepth::kAllFrames : media::VerifyDepth::kKeyFrames,
                       on_progress);
     } catch (const ReaderLeft&) {
@@ -391,13 +350,12 @@ Rendered render_video(std::span<Film> films, const CheckedOutput& output, const 
 
 std::vector<std::string> video_files(Film& film, FilmRenderer& renderer, const std::string& name) {
     const VideoDef& def = film.scene().video;
-    const bool is_opaque = pipeline::are_opaque({&film.scene(), 1});
     const media::CheckedVideo video{.path = name,
                                     .def = def,
-                                    .format = media::find_format(name, def, !is_opaque),
+                                    .format = media::find_format(name, def, !is_opaque(film.scene())),
                                     .end = film.frame_count()};
     check_ground(film.scene(), video.format);
-    const media::VideoMetadata data = metadata(Panels({&film, 1}, 1), 0, video.end, {});
+    const media::VideoMetadata data = metadata(film, 0, video.end, {});
     const std::int64_t per_chunk = media::frames_per_chunk(video.format, def.fps);
     std::vector<media::Chunk> chunks;
     for (std::int64_t first = 0; first < video.end; first += per_chunk) {

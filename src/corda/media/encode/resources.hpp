@@ -9,8 +9,8 @@
 namespace corda::media {
 
 /// Bytes of memory that a chunk takes while it is drawn and encoded, in addition to the rest of the program,
-/// by the measured bytes per pixel of the codec, and those of the OpenGL contexts of panels beyond the first.
-[[nodiscard]] std::uint64_t bytes_per_job(const Format& format, const VideoDef& def, std::size_t panels = 1);
+/// by the measured bytes per pixel of the codec.
+[[nodiscard]] std::uint64_t bytes_per_job(const Format& format, const VideoDef& def);
 
 /// The number of jobs: as asked for; for 0, one per core.
 [[nodiscard]] int jobs_of(int asked);

@@ -75,14 +75,6 @@ TEST(JobMemory, FollowsFromTheEncoderAndItsPreset) {
     EXPECT_EQ(bytes_per_pixel("a.mp4", "h264_nvenc"), bytes_per_pixel("a.mp4", "libaom-av1"));
 }
 
-TEST(JobMemory, CountsTheContextOfEachPanel) {
-    const VideoDef def;
-    const Format format = find_format("a.mp4", def);
-    const std::uint64_t alone = bytes_per_job(format, def);
-    EXPECT_EQ(bytes_per_job(format, def, 1), alone);
-    EXPECT_GT(16 * (bytes_per_job(format, def, 64) - alone), 3'400'000'000U);  // measured 3.5 GB in all
-}
-
 TEST(JobMemory, LimitsTheJobs) {
     EXPECT_EQ(jobs_of(3), 3);
     EXPECT_GE(jobs_of(0), 1);
