@@ -7,8 +7,6 @@
 #include <cstdint>
 #include <limits>
 
-#include "corda/golden/perceived.hpp"
-
 namespace corda::test {
 namespace {
 

@@ -17,10 +17,8 @@
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/workers.hpp"
-#include "corda/golden/perceived.hpp"
 #include "corda/golden/suite.hpp"
 #include "corda/media/defs.hpp"
-#include "corda/pipeline/plan_text.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -51,18 +49,12 @@ std::string words_of(const ComparedPicture& compared, const Image& a, const Imag
 /// Compares two pictures. Writes the picture of the difference to `diff`, if that is not empty.
 ComparedPicture compare_picture(const CompareOptions& options, const std::string& path_a,
                                 const std::string& path_b, const std::optional<Image>& mask,
-                                const std::string& diff, int threads) {
+                                const std::string& diff) {
     const Picture a = read_picture(path_a);
     const Picture b = read_picture(path_b);
     const Image* const mask_image = mask ? &*mask : nullptr;
-    PerceivedFigures figures = figures_for(options);
-    figures.threads = threads;
-    // Small pictures have no SSIM; only an explicit request is refused.
-    const bool is_small = std::min(a.image.width(), a.image.height()) < kMinSsimSidePx;
-    if (is_small && !options.limits.ssim) figures.ssim = false;
     ComparedPicture compared;
     compared.difference = compare(a, b, mask_image);
-    add_perceived(a.image, b.image, figures, compared.difference, mask_image);
     compared.passed = compared.difference.within(options.limits);
     compared.words = words_of(compared, a.image, b.image);
     if (!diff.empty()) write_png(diff, difference_image(a, b, mask_image), {}, {.force = options.force});
@@ -71,8 +63,7 @@ ComparedPicture compare_picture(const CompareOptions& options, const std::string
 
 ExitCode compare_pictures(const Console& console, const CompareOptions& options,
                           const std::optional<Image>& mask) {
-    const ComparedPicture compared =
-        compare_picture(options, options.a, options.b, mask, options.diff, usable_cores());
+    const ComparedPicture compared = compare_picture(options, options.a, options.b, mask, options.diff);
     console.result(compared.words);
     if (!options.diff.empty()) console.info(fmt::format("difference picture: {}", options.diff));
     nlohmann::json json = figures_json(compared.difference);
@@ -119,11 +110,11 @@ std::vector<Pair> pairs_of(const std::set<std::string>& a, const std::set<std::s
 void compare_pair(const CompareOptions& options, const std::optional<Image>& mask, Pair& pair) {
     const std::string a = options.a + "/" + pair.name;
     const std::string b = options.b + "/" + pair.name;
-    pair.compared = compare_picture(options, a, b, mask, "", 1);
+    pair.compared = compare_picture(options, a, b, mask, "");
     if (options.diff.empty() || pair.compared.difference.equal) return;
     const fs::path diff = fs::path(options.diff) / pair.name;
     make_folder(diff.parent_path().string());
-    pair.compared = compare_picture(options, a, b, mask, diff.string(), 1);
+    pair.compared = compare_picture(options, a, b, mask, diff.string());
 }
 
 /// Two pictures may take 512 MiB.
@@ -174,8 +165,6 @@ void take_worst(const Difference& difference, Difference& worst) {
     worst.max = std::max(worst.max, difference.max);
     worst.mean = std::max(worst.mean, difference.mean);
     worst.share = std::max(worst.share, difference.share);
-    if (difference.flip) worst.flip = std::max(worst.flip.value_or(0.0), *difference.flip);
-    if (difference.ssim) worst.ssim = std::min(worst.ssim.value_or(1.0), *difference.ssim);
 }
 
 ExitCode compare_folders(const Console& console, const CompareOptions& options,
@@ -226,8 +215,7 @@ void check_diff(const CompareOptions& options) {
     check_output(options.diff, options.b, options.force);
 }
 
-ExitCode compare(const Console& console, CompareOptions options) {
-    options.json = console.json();
+ExitCode compare(const Console& console, const CompareOptions& options) {
     std::optional<Image> mask;
     if (!options.mask.empty()) mask = read_png(options.mask);
     std::error_code none;  // the reader reports the problem
@@ -258,13 +246,7 @@ nlohmann::json figures_json(const Difference& difference) {
             {"same_size", difference.same_size},
             {"max", figure(golden::max_json(difference))},
             {"mean", figure(difference.mean)},
-            {"share", figure(difference.share)},
-            {"flip", or_null(difference.flip)},
-            {"ssim", or_null(difference.ssim)}};
-}
-
-PerceivedFigures figures_for(const CompareOptions& options) {
-    return {.flip = options.json || options.limits.flip, .ssim = options.json || options.limits.ssim};
+            {"share", figure(difference.share)}};
 }
 
 void add_compare(CLI::App& app, Action& action) {
@@ -283,14 +265,6 @@ void add_compare(CLI::App& app, Action& action) {
         ->check(within(0.0, 255.0));
     command.add_option("--share", options.limits.share, "share of differing pixels that passes")
         ->check(within(0.0, 1.0));
-    command
-        .add_option("--flip", options.limits.flip,
-                    "largest mean FLIP that passes (the visible difference at 67 pixels per degree)")
-        ->check(within(0.0, 1.0));
-    command
-        .add_option("--ssim", options.limits.ssim,
-                    "least structural similarity that passes; equal pictures have 1")
-        ->check(within(-1.0, 1.0));
     command.add_option("--mask", options.mask,
                        "PNG file of the same size: its black pixels are not compared");
     command.add_option("--diff", options.diff,

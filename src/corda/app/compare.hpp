@@ -18,13 +18,10 @@ struct CompareOptions {
     std::string mask;
     std::string diff;
     bool force = false;
-    bool json = false;  ///< figures that take long are wanted, too
 };
 
-/// The figures of a difference; null for those that were not computed.
+/// The figures of a difference; null if the sizes differ.
 [[nodiscard]] nlohmann::json figures_json(const Difference& difference);
-/// Which figures the limits ask for.
-[[nodiscard]] PerceivedFigures figures_for(const CompareOptions& options);
 
 /// Whether the name is that of a video.
 [[nodiscard]] bool is_video_name(const std::string& path);

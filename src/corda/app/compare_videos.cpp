@@ -57,11 +57,8 @@ void take_frames(const CompareOptions& options, const std::array<media::StoredPi
                                  pictures[0].is_full_range == pictures[1].is_full_range;
     if (is_stored_alike && pictures[0].samples == pictures[1].samples) return;
     std::array<Image, 2> images{pictures[0].rgba(), pictures[1].rgba()};
-    const PerceivedFigures figures{.flip = options.limits.flip.has_value(),
-                                   .ssim = options.limits.ssim.has_value()};
     const Image* const mask_image = mask ? &*mask : nullptr;
     Difference difference = compare(images[0], images[1], mask_image);
-    add_perceived(images[0], images[1], figures, difference, mask_image);
     // In one format, different samples can give the same colours; with a mask, only colours are compared.
     if (is_stored_alike && !mask) difference.equal = false;
     if (difference.equal) return;
@@ -99,9 +96,6 @@ VideoDifference compare_all_frames(const CompareOptions& options, const std::opt
             result.sizes[i] = {pictures[i].width_px, pictures[i].height_px};
         if (has_a && has_b) take_frames(options, pictures, mask, result);
     }
-    if (result.differing > 0 && options.json)
-        add_perceived(result.worst_pictures[0], result.worst_pictures[1], figures_for(options), result.worst,
-                      mask ? &*mask : nullptr);
     return result;
 }
 

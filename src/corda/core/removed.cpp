@@ -6,18 +6,21 @@
 namespace corda {
 namespace {
 
-struct Removed {
-    std::string_view name;
-    std::string_view replacement;
-};
-
 // Sorted by kind: commands, options, keys.
 constexpr std::array kRemoved{
     Removed{"recover", "render a long film as pictures (-o frames/%06d.png), which --resume continues"},
     Removed{"--panels", "use several ropes in one scene, or join videos by ffmpeg's filter xstack"},
+    Removed{"--flip", "use --max, --mean or --share"},
+    Removed{"--ssim", "use --max, --mean or --share"},
+    Removed{"golden.flip", "use golden.max, golden.mean or golden.share"},
+    Removed{"golden.ssim", "use golden.max, golden.mean or golden.share"},
 };
 
 }  // namespace
+
+std::span<const Removed> all_removed() {
+    return kRemoved;
+}
 
 std::string_view replacement_of(std::string_view name) {
     const auto* const found = std::ranges::find(kRemoved, name, &Removed::name);

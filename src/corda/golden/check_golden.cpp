@@ -111,10 +111,7 @@ GoldenOutcome check_golden(const Image& drawn, const std::string& name, const Go
             if (!golden) why = damage;
             continue;
         }
-        Difference difference = compare(one, shown);
-        add_perceived(one.image, drawn,
-                      {.flip = options.limits.flip.has_value(), .ssim = options.limits.ssim.has_value()},
-                      difference);
+        const Difference difference = compare(one, shown);
         if (difference.within(options.limits)) return {.matches = true, .written = false, .message = {}};
         if (golden && fs::path(variant).filename() != file) continue;
         why = fmt::format("differs from '{}': {}", variant, text_of(difference, one.image, drawn));

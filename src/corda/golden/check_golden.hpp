@@ -27,8 +27,8 @@ struct GoldenOutcome {
 ///   CORDA_UPDATE_GOLDENS     anything but empty or 0: write it, in place of NAME.png. A picture that `corda
 ///                            golden` keeps is not written: it says how it was made, which a picture does not.
 ///   CORDA_GOLDEN_ARTIFACTS   a folder for NAME.new.png and NAME.difference.png, not that of the golden pictures
-/// Throws corda::Error: kUsage for another ending, for artifacts among the golden pictures, and for an SSIM
-/// of pictures that are too small for it; kIo if a picture cannot be read or written.
+/// Throws corda::Error: kUsage for another ending, and for artifacts among the golden pictures; kIo if a
+/// picture cannot be read or written.
 [[nodiscard]] GoldenOutcome check_golden(const Image& drawn, const std::string& name,
                                          const GoldenOptions& options = {});
 

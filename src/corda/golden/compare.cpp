@@ -9,7 +9,6 @@
 
 #include "corda/core/cancel.hpp"
 #include "corda/core/text.hpp"
-#include "corda/golden/perceived.hpp"
 
 namespace corda {
 namespace {
@@ -147,18 +146,14 @@ const DeepImage& deep_of(const Picture& picture, DeepImage& made) {
 
 bool Difference::within(const DifferenceLimits& limits) const {
     if (!same_size) return false;
-    if (!limits.max && !limits.mean && !limits.share && !limits.flip && !limits.ssim) return equal;
+    if (!limits.max && !limits.mean && !limits.share) return equal;
     return (!limits.max || max <= *limits.max) && (!limits.mean || mean <= *limits.mean) &&
-           (!limits.share || share <= *limits.share) && (!limits.flip || (flip && *flip <= *limits.flip)) &&
-           (!limits.ssim || (ssim && *ssim >= *limits.ssim));
+           (!limits.share || share <= *limits.share);
 }
 
 std::string figures_text(const Difference& difference) {
-    std::string text = fmt::format("max {:.6g}, mean {:.6g}, share {:.6g}", difference.max, difference.mean,
-                                   difference.share);
-    if (difference.flip) text += fmt::format(", FLIP {:.6g}", *difference.flip);
-    if (difference.ssim) text += fmt::format(", SSIM {:.6g}", *difference.ssim);
-    return text;
+    return fmt::format("max {:.6g}, mean {:.6g}, share {:.6g}", difference.max, difference.mean,
+                       difference.share);
 }
 
 Difference compare(const Image& a, const Image& b, const Image* mask) {
@@ -170,27 +165,6 @@ Difference compare(const Picture& a, const Picture& b, const Image* mask) {
     DeepImage of_a;
     DeepImage of_b;
     return compare_samples(deep_of(a, of_a), deep_of(b, of_b), mask);
-}
-
-void add_perceived(const Image& a, const Image& b, const PerceivedFigures& figures, Difference& difference,
-                   const Image* mask) {
-    if (!difference.same_size) return;
-    if (difference.equal) {
-        if (figures.flip) difference.flip = 0.0;
-        if (figures.ssim) difference.ssim = 1.0;
-        return;
-    }
-    // What the mask leaves out must not show in its neighbours.
-    Image masked;
-    if (mask != nullptr) {
-        masked = b;
-        for (int y = 0; y < a.height(); ++y)
-            for (int x = 0; x < a.width(); ++x)
-                if (is_left_out(mask, x, y)) std::copy_n(a.pixel(x, y), kChannels, masked.pixel(x, y));
-    }
-    const Image& other = mask == nullptr ? b : masked;
-    if (figures.flip) difference.flip = flip(a, other, figures.threads);
-    if (figures.ssim) difference.ssim = ssim(a, other);
 }
 
 Image difference_image(const Picture& a, const Picture& b, const Image* mask) {

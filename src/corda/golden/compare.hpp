@@ -12,11 +12,9 @@ namespace corda {
 /// How far two pictures may differ. If no limit is given they must be equal; otherwise only the given limits
 /// count.
 struct DifferenceLimits {
-    std::optional<double> max;        ///< largest difference of a channel, 0 .. 255
-    std::optional<double> mean;       ///< mean difference over all channels and pixels, 0 .. 255
-    std::optional<double> share;      ///< share of the pixels that differ at all, 0 .. 1
-    std::optional<double> flip = {};  ///< mean FLIP, 0 .. 1, see flip()
-    std::optional<double> ssim = {};  ///< least structural similarity, -1 .. 1, see ssim()
+    std::optional<double> max;    ///< largest difference of a channel, 0 .. 255
+    std::optional<double> mean;   ///< mean difference over all channels and pixels, 0 .. 255
+    std::optional<double> share;  ///< share of the pixels that differ at all, 0 .. 1
 };
 
 /// How far two pictures differ.
@@ -26,15 +24,12 @@ struct Difference {
     double max = 0.0;       ///< largest difference of a channel (R, G, B and A), 0 .. 255
     double mean = 0.0;      ///< mean difference over all channels and pixels, 0 .. 255
     double share = 0.0;     ///< share of the compared pixels that differ in any channel
-    // Not always computed.
-    std::optional<double> flip = {};  ///< see flip(); of all pixels, those that a mask leaves out are equal
-    std::optional<double> ssim = {};  ///< see ssim(), as above; never of pictures that are too small
 
     /// Whether the difference is within `limits`.
     [[nodiscard]] bool within(const DifferenceLimits& limits) const;
 };
 
-/// "max 3, mean 0.1, share 0.02", and FLIP and SSIM if they were computed.
+/// "max 3, mean 0.1, share 0.02".
 [[nodiscard]] std::string figures_text(const Difference& difference);
 
 /// Compares all channels of all pixels of two pictures; with a `mask` of their size, of those that are not
@@ -44,18 +39,6 @@ struct Difference {
 
 /// As above, at 16 bits if one of them has as many. A difference of 1 in 65535 is then one of 1/257.
 [[nodiscard]] Difference compare(const Picture& a, const Picture& b, const Image* mask = nullptr);
-
-/// Which figures that take long add_perceived() computes.
-struct PerceivedFigures {
-    bool flip = false;
-    bool ssim = false;
-    int threads = 1;  ///< for FLIP
-};
-
-/// Adds figures to what compare() has found, at 8 bits. Throws kUsage for an ssim() of pictures that are too
-/// small and differ, kInterrupted as compare().
-void add_perceived(const Image& a, const Image& b, const PerceivedFigures& figures, Difference& difference,
-                   const Image* mask = nullptr);
 
 /// A picture of where two pictures differ. Equal pixels are a dim grey copy of `a`, and so are those that the
 /// mask leaves out. Others go from red to yellow with the size of the difference; even the smallest, at 16

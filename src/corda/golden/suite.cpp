@@ -14,7 +14,6 @@
 #include "corda/core/text.hpp"
 #include "corda/core/workers.hpp"
 #include "corda/golden/cases.hpp"
-#include "corda/golden/perceived.hpp"
 #include "corda/golden/record.hpp"
 #include "corda/media/bytes.hpp"
 #include "corda/pipeline/film_renderer.hpp"
@@ -25,8 +24,6 @@ namespace corda::golden {
 namespace {
 
 namespace fs = std::filesystem;
-
-static_assert(GoldenDef::kMinSsimSidePx == kMinSsimSidePx);
 
 /// A thread of its own draws no fewer pictures: the context that it needs takes as long as some of them.
 constexpr std::size_t kMinApart = 8;
@@ -54,9 +51,6 @@ bool passes(const Drawn& drawn, const DifferenceLimits& limits, const std::strin
     }
     picture.difference = reference.deep ? compare(reference, {.image = drawn.image}, drawn.mask)
                                         : compare(reference.image, drawn.image, drawn.mask);
-    add_perceived(reference.image, drawn.image,
-                  {.flip = limits.flip.has_value(), .ssim = limits.ssim.has_value()}, picture.difference,
-                  drawn.mask);
     if (picture.difference.within(limits)) return true;
     const Cause cause = cause_of(provenance_in(read_png_info(path)), drawn.made,
                                  view::fallback_names(shown_texts(drawn.scene)));
@@ -73,11 +67,7 @@ bool passes(const Drawn& drawn, const DifferenceLimits& limits, const std::strin
 /// one.
 void judge(const Drawn& drawn, const std::vector<std::string>& variants, Checked& picture) {
     const GoldenDef& golden = *drawn.scene.golden;
-    const DifferenceLimits limits{.max = golden.max,
-                                  .mean = golden.mean,
-                                  .share = golden.share,
-                                  .flip = golden.flip,
-                                  .ssim = golden.ssim};
+    const DifferenceLimits limits{.max = golden.max, .mean = golden.mean, .share = golden.share};
     picture.verdict = variants.empty() ? Verdict::kMissing : Verdict::kDifferent;
     std::optional<Checked> failed;
     for (const std::string& path : variants) {

@@ -210,9 +210,9 @@ PYBIND11_MODULE(_corda, module) {
     });
     module.def("check_golden",
                [](const py::object& picture, const std::string& name, const std::string& folder,
-                  const std::array<std::optional<double>, 5>& limits) {
-                   const corda::testing::GoldenOptions options{
-                       .folder = folder, .limits = {limits[0], limits[1], limits[2], limits[3], limits[4]}};
+                  const std::array<std::optional<double>, 3>& limits) {
+                   const corda::testing::GoldenOptions options{.folder = folder,
+                                                               .limits = {limits[0], limits[1], limits[2]}};
                    const auto outcome = Asking().run([&, image = to_image(picture)] {
                        return corda::testing::check_golden(image, name, options);
                    });

@@ -8,6 +8,7 @@
 
 #include "corda/core/css_colors.hpp"
 #include "corda/core/image.hpp"
+#include "corda/core/removed.hpp"
 #include "corda/core/text.hpp"
 #include "corda/scene/schema.hpp"
 #include "corda/scene/table_reader.hpp"
@@ -221,13 +222,17 @@ class TableChecker {
                              const std::string& path) const {
         for (const auto& [key, node] : table) {
             if (find_key(section, key.str()) != nullptr) continue;
+            const std::string name = excerpt(key.str());
+            if (const auto instead = replacement_of(dotted(section, key.str())); !instead.empty()) {
+                problems_->add(key.source(), dotted(path, name), fmt::format("was removed; {}", instead));
+                continue;
+            }
             std::vector<std::string_view> known;
             for (const Key& one : keys_of(section)) known.push_back(one.name);
             const auto meant = nearest(key.str(), known);
             if (meant) problems_->add_misspelt(dotted(path, *meant));
             std::string hint = meant ? fmt::format("; did you mean \"{}\"?", *meant) : other_home(key.str());
             if (hint.empty()) hint = fmt::format("; valid keys: {}", fmt::join(known, ", "));
-            const std::string name = excerpt(key.str());
             problems_->add(key.source(), dotted(path, name), fmt::format("unknown key \"{}\"{}", name, hint));
         }
     }

@@ -108,15 +108,6 @@ std::vector<DefProblem> problems_of(const GoldenDef& golden) {
     if (!is_picture_size(golden.width_px, golden.height_px))
         problems.push_back(
             {"size", {}, fmt::format("over the limit of {} pixels; give a smaller size", kMaxPicturePx)});
-    if (golden.ssim && std::min(golden.width_px, golden.height_px) < GoldenDef::kMinSsimSidePx) {
-        problems.push_back(
-            {"ssim",
-             {},
-             fmt::format("pictures of {}x{} pixels have no SSIM; give golden.flip, or a golden.size "
-                         "of at least {}x{}",
-                         golden.width_px, golden.height_px, GoldenDef::kMinSsimSidePx,
-                         GoldenDef::kMinSsimSidePx)});
-    }
     return problems;
 }
 

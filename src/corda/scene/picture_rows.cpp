@@ -249,8 +249,6 @@ std::vector<Key> golden_keys() {
         limit("mean", 0.0, 255.0, &GoldenDef::mean, "the mean difference of all channels that passes", ""),
         limit("share", 0.0, 1.0, &GoldenDef::share, "the share of differing pixels that passes",
               "given without golden.max it bounds the share alone"),
-        limit("flip", 0.0, 1.0, &GoldenDef::flip, "the mean FLIP that passes", ""),
-        limit("ssim", -1.0, 1.0, &GoldenDef::ssim, "the least structural similarity that passes", ""),
         {"golden", "mask", of(Kind::kText), "", field(&GoldenDef::mask),
          "a PNG of this size whose black pixels are not compared", "relative to the scene's folder"},
     };

@@ -47,8 +47,6 @@ struct BodySolverDef {
 
 /// The golden pictures of a scene and the tolerances of the comparison.
 struct GoldenDef {
-    static constexpr int kMinSsimSidePx = 11;  ///< smaller pictures have no SSIM
-
     std::vector<double> at_s;  ///< times in seconds, increasing, at least one; 0 .. world.duration_s
     int width_px = 320;        ///< see is_picture_size()
     int height_px = 180;
@@ -56,8 +54,6 @@ struct GoldenDef {
     std::optional<double> max;    ///< largest difference of a channel, 0 .. 255
     std::optional<double> mean;   ///< mean difference over all channels and pixels, 0 .. 255
     std::optional<double> share;  ///< share of the pixels that differ at all, 0 .. 1
-    std::optional<double> flip;   ///< mean FLIP, 0 .. 1
-    std::optional<double> ssim;   ///< least structural similarity, -1 .. 1; see kMinSsimSidePx
     std::string mask;  ///< PNG of the same size whose black pixels are not compared; from the scene's folder
 };
 

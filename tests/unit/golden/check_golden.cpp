@@ -54,23 +54,6 @@ TEST_F(CheckGolden, MatchesEqualPicturesAndThoseWithinLimits) {
     EXPECT_THAT(check_golden(Image(8, 6), "dot.png").message, HasSubstr("one colour alone"));
 }
 
-TEST_F(CheckGolden, TakesFlipAndSsimAsLimits) {
-    Image golden(16, 16);
-    for (std::size_t i = 3; i < golden.size_bytes(); i += 4) golden.data()[i] = 255;
-    Image drawn = golden;
-    golden.pixel(8, 8)[1] = 200;
-    drawn.pixel(8, 8)[1] = 190;
-    write_png(folder_.file("ref/large.png"), golden);
-    EXPECT_THAT(drawn,
-                MatchesGolden("large.png", {.limits = {.max = {}, .mean = {}, .share = {}, .flip = 0.5}}));
-    EXPECT_THAT(drawn,
-                MatchesGolden("large.png", {.limits = {.max = {}, .mean = {}, .share = {}, .ssim = 0.5}}));
-    const auto outcome =
-        check_golden(drawn, "large.png", {.limits = {.max = {}, .mean = {}, .share = {}, .flip = 0.0}});
-    EXPECT_FALSE(outcome.matches);
-    EXPECT_THAT(outcome.message, HasSubstr(", FLIP "));
-}
-
 TEST_F(CheckGolden, MatchesAnyVariant) {
     write_png(folder_.file("ref/dot.older.png"), with_dot(90));
     EXPECT_THAT(with_dot(90), MatchesGolden("dot.png"));

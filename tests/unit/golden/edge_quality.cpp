@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "corda/golden/perceived.hpp"
-
 namespace corda::test {
 namespace {
 

@@ -75,8 +75,6 @@ TEST(Definitions, HaveValuesWithinTheirRange) {
              {"solver.delta", [](Scene&s, double v) { s.solver = RelaxationDef{.delta = v}; }, {1.0}},
              {"golden.max", [](Scene&s, double v) { s.golden->max = v; }, {256.0}},
              {"golden.mean", [](Scene&s, double v) { s.golden->mean = v; }, {-1.0}},
-             {"golden.flip", [](Scene&s, double v) { s.golden->flip = v; }, {1.1}},
-             {"golden.ssim", [](Scene&s, double v) { s.golden->ssim = v; }, {-1.1}},
          }) {
         for (const double value : one.bad)
             EXPECT_THAT(message_of([&](Scene& scene) { one.set(scene, value); }),
@@ -87,15 +85,6 @@ TEST(Definitions, HaveValuesWithinTheirRange) {
                         testing::HasSubstr("is not a finite number"))
                 << one.key;
     }
-}
-
-TEST(Definitions, AskForNoSsimOfSmallPictures) {
-    EXPECT_EQ(message_of([](Scene& scene) {
-                  scene.golden->ssim = 0.9;
-                  scene.golden->height_px = 10;
-              }),
-              "golden.ssim: pictures of 320x10 pixels have no SSIM; give golden.flip, or a golden.size of at "
-              "least 11x11");
 }
 
 TEST(Definitions, HaveKnownWords) {

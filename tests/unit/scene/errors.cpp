@@ -1,6 +1,8 @@
 // Every way in which a scene can be wrong has a message with the exact place, the value and the remedy.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "corda/core/removed.hpp"
 #include "unit/scene/support.hpp"
 
 namespace corda::scene {
@@ -44,6 +46,15 @@ TEST(SceneErrors, UnknownKeys) {
          "swing.toml:4:1: world.zz: ", "valid keys"},  // the first in the file
         {with("\"a\\u0001b\" = 1"), "swing.toml:3:1: a\\x01b: ", "unknown key"},
     });
+}
+
+TEST(SceneErrors, RemovedKeysNameWhatReplacesThem) {
+    for (const auto& [name, replacement] : all_removed()) {
+        if (name.find('.') == std::string_view::npos) continue;  // a command or an option
+        const std::string message = error_of(with(fmt::format("{} = 1", name))).message;
+        EXPECT_TRUE(message.starts_with("swing.toml:3:")) << message;
+        EXPECT_THAT(message, testing::HasSubstr(fmt::format(": {}: was removed; {}", name, replacement)));
+    }
 }
 
 TEST(SceneErrors, Syntax) {

@@ -11,6 +11,4 @@ def assert_matches_golden(
     max: float | None = None,
     mean: float | None = None,
     share: float | None = None,
-    flip: float | None = None,
-    ssim: float | None = None,
 ) -> None: ...
