@@ -76,7 +76,6 @@ on_debian13() {
 
 on_arm64() {
     local system=$work/arm64 release packages
-    src/cmake/setup.sh platforms
     release=$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)
     packages=$(src/cmake/setup.sh list | grep -E '^(lib|fonts|nlohmann|python3-dev|pybind)' | paste -sd,)
     new_system "$release" "$system" --variant=extract --architectures=arm64 --include="libc6-dev,libopengl0,$packages" \
@@ -104,7 +103,7 @@ END
     say "arm64: all videos with the same bytes"
 }
 
-src/cmake/setup.sh test
+src/cmake/setup.sh platforms
 make_outputs "$work/here" build/ci/corda >/dev/null
 platforms=("$@")
 [[ $# -gt 0 ]] || platforms=(debian13 arm64)

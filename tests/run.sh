@@ -2,7 +2,8 @@
 # Installs missing packages, builds Corda with warnings as errors and runs every test with ctest.
 # Usage: tests/run.sh [--preset ci|asan|tsan|debug] [--long | --units] [-- CTEST ARGUMENTS]
 #   --preset tsan  only the tests of threads, under ThreadSanitizer
-#   --long   the long form of the slow suites, tests/platforms.sh and tests/cluster/slurm.sh
+#   --long   the long form of the slow suites, the tests that need large packages, tests/platforms.sh and
+#            tests/cluster/slurm.sh
 #   --units  only the tests of unit and fuzz
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -21,13 +22,21 @@ done
 [[ "$preset" == tsan ]] && target=thread_tests
 
 "$root/tests/lint/rooms.sh"
-"$root/src/cmake/setup.sh" test
+tests=$preset
+packages=test
+if [[ -n "${CORDA_TEST_LONG:-}" && "$preset" == ci ]]; then
+    tests=long
+    packages=long
+fi
+"$root/src/cmake/setup.sh" "$packages"
 cd "$root"
 [[ -f "build/$preset/build.ninja" ]] || cmake --preset "$preset" >/dev/null
 cmake --build "build/$preset" --target "$target"
 [[ "$target" != unit_tests ]] || set -- -L 'unit|fuzz' -E fuzz.random_scenes "$@"
-ctest --preset "$preset" "$@"
-if [[ -n "${CORDA_TEST_LONG:-}" && "$preset" == ci && $# -eq 0 ]]; then
+ctest --preset "$tests" "$@"
+if [[ "$tests" == ci && $# -eq 0 ]]; then
+    echo "run.sh: tests/run.sh --long also runs:$(ctest --preset long -N -L long | sed -n 's/^ *Test .*: / /p' | tr -d '\n')"
+elif [[ "$tests" == long && $# -eq 0 ]]; then
     tests/cluster/slurm.sh build/ci
     tests/platforms.sh
 fi

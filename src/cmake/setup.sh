@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 or 13 packages that Corda needs; does nothing if all are installed.
-# Usage: setup.sh [build|test|platforms|cluster|peers|list]
+# Usage: setup.sh [build|test|long|platforms|cluster|peers|list]
 #   test        adds the packages of the tests
+#   long        adds these and the large packages that few tests use: tests/run.sh --long
 #   platforms   adds the packages that build and run AArch64 programs here
 #   cluster     adds the packages that run a Slurm cluster here
 #   peers       adds the libraries that tests/benchmark/peers.sh compares Corda with
@@ -53,22 +54,26 @@ if [[ "${1:-build}" != build ]]; then
         clang-format        # the style check
         clang               # the tests under the sanitizers, by a second compiler
         libclang-rt-dev     # its sanitizers
-        clang-tidy          # the static checks
         ffmpeg              # a second opinion on the videos: ffprobe
         libxml2-utils       # checks that pages and SVG are well formed: xmllint
         librsvg2-bin        # a second opinion on SVG: rsvg-convert
         poppler-utils       # a second opinion on PDF: pdftoppm
         python3-pytest      # the tests of the Python module
         python3-pytest-xdist  # user tests in several processes that draw
+        python3-jsonschema  # a second opinion on the JSON Schema of scenes
+        mandoc              # checks the manual page
+        zsh                 # checks its completion
+        fish                # the same
+    )
+fi
+if [[ "${1:-build}" == long ]]; then
+    packages+=(
+        clang-tidy          # the static checks
         python3-torch       # a DataLoader whose workers make samples: examples/sweep
         python3-pandas      # reads the table of a sweep: examples/sweep
         jupyter-nbconvert   # runs the example notebook
         python3-ipykernel   # the kernel of the notebook
-        python3-jsonschema  # a second opinion on the JSON Schema of scenes
         chromium            # plays videos, and shows pages with scripts
-        mandoc              # checks the manual page
-        zsh                 # checks its completion
-        fish                # the same
         parallel            # runs the shards of a film: examples/cluster
         python3-distributed # the same on Dask
         python3-yaml        # reads the example for Kubernetes
@@ -78,6 +83,7 @@ if [[ "${1:-build}" != build ]]; then
 fi
 if [[ "${1:-build}" == platforms ]]; then
     packages+=(
+        mmdebstrap          # new Debian systems to build in
         crossbuild-essential-arm64  # the compiler for AArch64
         qemu-user-static    # runs its programs
     )

@@ -377,6 +377,7 @@ def test_forked_workers_draw_after_their_parent_has_drawn(tmp_path):
     assert done.stdout.split("\n")[:5] == 4 * ["[True, True]"] + ["0"], done.stderr
 
 
+@pytest.mark.long
 def test_the_example_notebook_runs(tmp_path):
     notebook = tmp_path / "notebook.ipynb"  # its outputs go into the same folder
     notebook.write_bytes((EXAMPLES / "notebook.ipynb").read_bytes())

@@ -356,6 +356,7 @@ def lines_of_example(name, path):
     return ended.stdout.splitlines()
 
 
+@pytest.mark.long
 def test_a_data_loader_forks_workers_that_make_all_clips(clips):
     lines = lines_of_example("torch_clips.py", clips / "clips.toml")
     assert len(lines) == 6  # of 2 workers, each with 20 clips in batches of 8
@@ -376,6 +377,7 @@ def test_tarfile_and_numpy_read_the_shards(clips):
     assert all(" ".join(line[-3:]) == "(60, 64, 64)" for line in lines)
 
 
+@pytest.mark.long
 def test_pandas_reads_the_table(clips):
     lines = lines_of_example("table.py", clips / "shards")
     assert lines[0].split() == ["world.gravity", "1.62", "3.73", "9.81"]
