@@ -18,15 +18,7 @@ namespace corda::sim {
 namespace {
 
 const char* name_of(RelaxationKernel kernel) {
-    switch (kernel) {
-        case RelaxationKernel::kScalar:
-            return "scalar";
-        case RelaxationKernel::kSse2:
-            return "sse2";
-        case RelaxationKernel::kAvx2:
-            return "avx2";
-    }
-    return "";
+    return kernel == RelaxationKernel::kScalar ? "scalar" : "avx2";
 }
 
 /// A run by one kernel, timed in slices of some steps.

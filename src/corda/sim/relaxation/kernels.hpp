@@ -24,14 +24,11 @@ struct RelaxationMotion {
     double keep = 1.0;                  ///< share of the velocity kept per step
 };
 
-/// Implementations of the sweeps. All kernels give the same bits: they do the same correctly rounded
-/// operations on each particle in the same order.
-///
-/// kScalar takes the bars one by one and waits for the square root and division of each. kSse2 takes two bars
-/// of a packet at once (RelaxationSchedule), and several sweeps, each `lag` packets behind its predecessor.
-/// kAvx2 takes four bars at once, and begins the packet of one sweep before it finishes that of another;
-/// where these would leave it without work, it runs packets of bars of overlapping sweeps.
-enum class RelaxationKernel { kScalar, kSse2, kAvx2 };
+/// Implementations of the sweeps. Both give the same bits: they do the same correctly rounded operations on
+/// each particle in the same order. kScalar takes the bars one by one and waits for the square root and
+/// division of each. kAvx2 takes the four bars of a packet at once (RelaxationSchedule), and packets of
+/// several sweeps in turn.
+enum class RelaxationKernel { kScalar, kAvx2 };
 
 /// The kernels that this CPU can run, the fastest last.
 [[nodiscard]] std::span<const RelaxationKernel> relaxation_kernels();
@@ -53,8 +50,7 @@ struct RelaxationSweeps {
 void run_sweeps(std::span<const RelaxationBar> bars, const RelaxationSweeps& sweeps,
                 RelaxationMotion& motion);
 
-/// The same for the bars and particles of a schedule, by a kernel of this CPU other than kScalar.
-void run_sweeps(const RelaxationSchedule& schedule, const RelaxationSweeps& sweeps, RelaxationKernel kernel,
-                RelaxationMotion& motion);
+/// The same for the bars and particles of a schedule, by kAvx2.
+void run_sweeps(const RelaxationSchedule& schedule, const RelaxationSweeps& sweeps, RelaxationMotion& motion);
 
 }  // namespace corda::sim

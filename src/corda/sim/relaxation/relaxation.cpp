@@ -48,7 +48,7 @@ std::vector<RelaxationBar> movable_bars(const System& system, std::size_t first,
         const bool b_is_pinned = system.is_pinned(bar.b);
         if (a_is_pinned && b_is_pinned) continue;
         const double share_a = a_is_pinned ? 0.0 : (b_is_pinned ? 1.0 : 0.5);
-        bars.push_back({bar.a, bar.b, bar.rest_m, share_a, 1.0 - share_a});
+        bars.push_back({bar.a, bar.b, bar.rest_m, share_a});
     }
     return bars;
 }
@@ -170,9 +170,9 @@ void Relaxation::advance(std::uint64_t steps) {
                       [this](const RelaxationSweeps& piece) { run_sweeps(bars_, piece, motion_); });
     }
     for (const RelaxationSchedule& schedule : schedules_) {
-        const std::size_t bars = RelaxationPacket::kLanes * schedule.alone.packets.size();
-        run_in_pieces(sweeps, bars + schedule.alone.updates.size(),
-                      [&](const RelaxationSweeps& piece) { run_sweeps(schedule, piece, kernel_, motion_); });
+        const std::size_t bars = RelaxationPacket::kLanes * schedule.packets.size();
+        run_in_pieces(sweeps, bars + schedule.updates.size(),
+                      [&](const RelaxationSweeps& piece) { run_sweeps(schedule, piece, motion_); });
     }
     // Add what the bars moved to the move, as the next update would.
     for (std::size_t k = 0; k < size; ++k) {

@@ -47,7 +47,7 @@ class Relaxation final : public Solver {
     std::vector<double> mass_kg_;
     std::vector<Vec2> force_n_;                  ///< 0 for a pinned particle
     std::vector<RelaxationBar> bars_;            ///< for kScalar
-    std::vector<RelaxationSchedule> schedules_;  ///< for the others; of some bodies each
+    std::vector<RelaxationSchedule> schedules_;  ///< for kAvx2; of some bodies each
 };
 
 }  // namespace corda::sim
