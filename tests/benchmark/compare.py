@@ -11,7 +11,7 @@ import tempfile
 
 KERNELS = ["relaxation", "rattle", "exact", "pipeline"]
 # Counters of the benchmarks that are times, in order of preference; otherwise the CPU time of an iteration.
-TIMES = ["avx2_ns/bar", "avx_ns/bar", "sse2_ns/bar", "s/particle-step", "s/particle"]
+TIMES = ["avx2_ns/bar", "avx_ns/bar", "s/particle-step", "s/particle"]
 VIDEOS = [
     ("swing.toml", "640x360", []),
     ("swing.toml", "1920x1080", []),
