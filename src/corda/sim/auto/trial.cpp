@@ -8,7 +8,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -160,49 +159,6 @@ double rounding_m(const System& system, const MotionBounds& bounds) {
     return std::numeric_limits<double>::epsilon() *
            (2.0 * farthest_m + kMagnified * largest_length_m(system));
 }
-
-/// Three links between two pins whose lengths and distance allow all of them to come into line, as in a
-/// parallelogram. There, lengths and places that are off by their rounding move the links by its square root,
-/// which a run and its check do not show if it moves both alike.
-class Linkage {
-  public:
-    explicit Linkage(const System& system) {
-        if (system.bars.size() != 3 || !system.bodies.front().is_chain || !system.is_pinned(0) ||
-            !system.is_pinned(3))
-            return;
-        const double span_m = length(system.x_m[3] - system.x_m[0], system.y_m[3] - system.y_m[0]);
-        const double all_m = largest_length_m(system);
-        for (int signs = 0; signs < 8; ++signs) {
-            double open_m = span_m;
-            for (int k = 0; k < 3; ++k)
-                open_m +=
-                    ((signs >> k) % 2 == 0 ? 1.0 : -1.0) * system.bars[static_cast<std::size_t>(k)].rest_m;
-            if (std::abs(open_m) < kSameLength * all_m) moved_m_ = kMoved * all_m;
-        }
-        if (moved_m_ > 0.0) side_ = side({0.0, system.x_m, system.y_m});
-    }
-
-    /// Bound on the move by rounding up to this state, the next of the motion.
-    [[nodiscard]] double moved_m(const State& state) {
-        if (moved_m_ == 0.0) return 0.0;
-        const double before = std::exchange(side_, side(state));
-        passes_ += before * side_ <= 0.0 ? 1.0 : 0.0;
-        return passes_ * moved_m_;
-    }
-
-  private:
-    static constexpr double kSameLength = 1e-12;
-    static constexpr double kMoved = 3e-8;  // two roots of a rounding
-    /// Its sign changes on the line.
-    static double side(const State& state) {
-        const auto& [x, y] = std::tie(state.x_m, state.y_m);
-        return (x[1] - x[0]) * (y[2] - y[1]) - (y[1] - y[0]) * (x[2] - x[1]);
-    }
-
-    double moved_m_ = 0.0;
-    double side_ = 0.0;
-    double passes_ = 0.0;
-};
 
 }  // namespace
 
@@ -413,7 +369,6 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
                          (kind.is_first && std::holds_alternative<RattleDef>(trial.method));
     Checks checks(system, world, trial.check, interval_s, has_one ? 1 : Checks::kMaxCount);
     Comparison comparison(def.tolerance_m);
-    Linkage linkage(system);
     const Forces forces(world);
     OtherSnaps other_snaps(system, forces, def, trial.check);
     recording.clear();
@@ -438,8 +393,8 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
         if (!trial.diverged) {
             const double time_s = def.timeline.time_s(static_cast<std::size_t>(i));
             const MotionBounds& bounds = recording.bounds();
-            const double difference_m = other_snaps.difference_m(time_s, checks, run.state(), bounds, passes);
-            comparison.add(time_s, difference_m + linkage.moved_m(run.state()), bounds);
+            comparison.add(time_s, other_snaps.difference_m(time_s, checks, run.state(), bounds, passes),
+                           bounds);
         }
         is_checked = !trial.diverged && !comparison.has_parted();
     }
