@@ -20,11 +20,10 @@ packages=(
     libegl-mesa0            # EGL without a screen, even without a GPU
     libgl1-mesa-dri         # llvmpipe: OpenGL on the CPU
     libavcodec-dev          # the encoders and the decoders that check their output
-    libavformat-dev         # muxers and demuxers of MP4, WebM, Matroska, GIF, APNG
+    libavformat-dev         # muxers and demuxers of MP4, WebM, Matroska, GIF
     libavutil-dev           # frames and error texts of the two above
     libx264-dev             # H.264 with hints on unchanged macroblocks, which libavcodec cannot pass on
     zlib1g-dev              # masks in the .npz files of sweeps, and long scenes in pictures and videos
-    libwebp-dev             # animated WebP, which libavcodec does not decode
     libeigen3-dev           # sparse factorisation for nets of bars
     libcairo2-dev           # stills as PDF
     libfreetype-dev         # glyphs of text in pictures

@@ -151,14 +151,12 @@ TEST_F(ProvenanceOfFiles, FilesWithoutItAreRefused) {
         2);
 }
 
-TEST_F(ProvenanceOfFiles, AnimationsHaveNone) {
-    for (const char* const name : {"a.gif", "a.apng", "a.webp"}) {
-        run({"render", scene_, "--duration", "0.1", "--fps", "25", "-o", folder().file(name)});
-        const auto result =
-            run_corda({"render", "--from", folder().file(name), "-o", folder().file("x.mp4")});
-        EXPECT_EQ(result.exit_code, 2);
-        EXPECT_THAT(result.err, HasSubstr("is a GIF, an APNG or a WebP"));
-    }
+TEST_F(ProvenanceOfFiles, GifsHaveNone) {
+    const std::string gif = folder().file("a.gif");
+    run({"render", scene_, "--duration", "0.1", "--fps", "25", "-o", gif});
+    const auto result = run_corda({"render", "--from", gif, "-o", folder().file("x.mp4")});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr("is a GIF"));
 }
 
 TEST_F(ProvenanceOfFiles, DamagedProvenanceIsRefused) {

@@ -321,15 +321,13 @@ INSTANTIATE_TEST_SUITE_P(
             "render SCENE -o DIR/x.mp4 --size 64x64 --duration 0.1",
             "style.background: \"#00000000\" is transparent, and H.264 in MP4 cannot be; give an opaque "
             "colour (--set style.background=#ffffff), draw stills as .png, or a video as .webm, .mov, .mkv, "
-            ".gif, .apng, .webp",
+            ".gif",
             {{{"--duration 0.1", "--duration 0.1 --set style.background=#ffffff"}},
              {{"render SCENE -o DIR/x.mp4 --size 64x64 --duration 0.1", "still SCENE -o DIR/x.png --at 0"}},
              {{"x.mp4", "x.webm"}},
              {{"x.mp4", "x.mov"}},
              {{"x.mp4", "x.mkv"}},
-             {{"x.mp4", "x.gif"}, {"--duration 0.1", "--duration 0.1 --fps 50"}},
-             {{"x.mp4", "x.apng"}},
-             {{"x.mp4", "x.webp"}}}},
+             {{"x.mp4", "x.gif"}, {"--duration 0.1", "--duration 0.1 --fps 50"}}}},
         Remedy{"transparent_video_of_another_codec",
                rope_scene(kHang, "[style]\nbackground = \"transparent\"\n"),
                "render SCENE -o DIR/x.webm --size 64x64 --duration 0.1 --codec av1",

@@ -1,10 +1,6 @@
 #include "support/decode_rgba.hpp"
 
-#include <webp/decode.h>
-#include <webp/demux.h>
-
 #include <cstring>
-#include <memory>
 #include <sstream>
 #include <stdexcept>
 
@@ -12,26 +8,6 @@
 
 namespace corda::test {
 namespace {
-
-DecodedRgba decode_webp(const std::string& path) {
-    const std::string bytes = read_file(path);
-    const WebPData data{reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
-    const std::unique_ptr<WebPAnimDecoder, decltype(&WebPAnimDecoderDelete)> decoder(
-        WebPAnimDecoderNew(&data, nullptr), &WebPAnimDecoderDelete);
-    WebPAnimInfo info{};
-    if (!decoder || WebPAnimDecoderGetInfo(decoder.get(), &info) == 0) throw std::runtime_error("no WebP");
-    DecodedRgba video;
-    int end_ms = 0;
-    while (WebPAnimDecoderHasMoreFrames(decoder.get()) != 0) {
-        std::uint8_t* rgba = nullptr;
-        video.times_s.push_back(end_ms / 1000.0);
-        if (WebPAnimDecoderGetNext(decoder.get(), &rgba, &end_ms) == 0) throw std::runtime_error("no frame");
-        Image& picture = video.pictures.emplace_back(static_cast<int>(info.canvas_width),
-                                                     static_cast<int>(info.canvas_height));
-        std::memcpy(picture.data(), rgba, picture.size_bytes());
-    }
-    return video;
-}
 
 std::string output_of(const std::string& command) {
     const CommandResult result = run_shell(command);
@@ -42,7 +18,6 @@ std::string output_of(const std::string& command) {
 }  // namespace
 
 DecodedRgba decode_rgba(const std::string& path) {
-    if (path.ends_with(".webp")) return decode_webp(path);
     const std::string input = (path.ends_with(".webm") ? "-c:v libvpx-vp9 -i " : "-i ") + quoted(path);
     const bool is_av1 =
         path.ends_with(".webm") &&

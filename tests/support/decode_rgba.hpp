@@ -13,8 +13,8 @@ struct DecodedRgba {
     std::vector<Image> pictures;
 };
 
-/// Decodes all frames by the program ffmpeg, which also converts the colours, VP9 with its alpha; of a .webp
-/// by libwebp. Throws std::runtime_error on any error.
+/// Decodes all frames by the program ffmpeg, which also converts the colours, VP9 with its alpha.
+/// Throws std::runtime_error on any error.
 [[nodiscard]] DecodedRgba decode_rgba(const std::string& path);
 
 }  // namespace corda::test

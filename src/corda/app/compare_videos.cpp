@@ -199,8 +199,8 @@ void write_difference(const CompareOptions& options, const Json& json, const std
 
 bool is_video_name(const std::string& path) {
     const std::string ending = std::filesystem::path(path).extension().string();
-    constexpr std::array<std::string_view, 10> kEndings{".mp4",  ".mov",  ".mkv", ".webm", ".gif",
-                                                        ".apng", ".webp", ".m4v", ".avi",  ".y4m"};
+    constexpr std::array<std::string_view, 8> kEndings{".mp4", ".mov", ".mkv", ".webm",
+                                                       ".gif", ".m4v", ".avi", ".y4m"};
     return std::ranges::find(kEndings, ending) != kEndings.end();
 }
 

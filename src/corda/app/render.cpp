@@ -137,7 +137,7 @@ void report_format(const Console& console, const Scene& scene, const CheckedOutp
     }
     if (!view::look_of(scene.style).ground.is_opaque() && std::string_view(format.ending->muxer) == "gif")
         console.warning(
-            "a GIF has no half transparent pixels: edges will be hard; .webp and .apng keep them");
+            "a GIF has no half transparent pixels: edges will be hard; .webm and .mov keep them");
     const std::string warning =
         media::disk_warning(format, output.path(), output.video().def, output.end() - output.first());
     if (!warning.empty()) console.warning(warning);

@@ -56,7 +56,7 @@ struct VideoDef {
     /// where things are at its time; not before the motion's start, nor after its end.
     double shutter = 0.0;
     int subframes = 16;  ///< 2 .. kMaxSubframes: of how many pictures a blurred one is the mean
-    /// How often a GIF, APNG or WebP plays, 0 .. kMaxLoop; 0: for ever.
+    /// How often a GIF plays, 0 .. kMaxLoop; 0: for ever.
     int loop = 0;
     EncoderDef encoder;
 

@@ -180,8 +180,8 @@ struct RenderDef {
     /// Decode every frame of the finished video, also of H.264, ProRes and FFV1.
     bool verify_all = false;
     /// Called after each frame, repeatedly while a large frame is drawn and while the finished video is
-    /// copied and verified, and with all frames at the end; returning false stops. Frames of a .gif, .apng or
-    /// .webp count twice: once when drawn, and once when encoded after all are drawn.
+    /// copied and verified, and with all frames at the end; returning false stops. Frames of a .gif count
+    /// twice: once when drawn, and once when encoded after all are drawn.
     OnProgress on_progress;
 };
 

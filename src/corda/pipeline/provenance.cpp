@@ -382,8 +382,7 @@ Provenance read_provenance(const std::string& path, OriginUse use) {
         throw_usage("'{}' is a scene file; {}", path,
                     use == OriginUse::kJoin ? kVideoRemedy : "give it without --from");
     const std::string kind = media::file_kind(path);
-    if (kind == "gif" || kind == "apng" || kind == "webp")
-        fail_at(path, "is a GIF, an APNG or a WebP; these formats carry no provenance", use);
+    if (kind == "gif") fail_at(path, "is a GIF, which carries no provenance", use);
     PngTexts png;
     if (media::is_png(path))
         png = texts_in(read_png_info(path));

@@ -59,7 +59,7 @@ std::vector<Key> video_keys() {
         {"video", "subframes", integer(2, VideoDef::kMaxSubframes), "", field(&VideoDef::subframes),
          "the number of pictures that a blurred frame is the mean of"},
         {"video", "loop", integer(0, VideoDef::kMaxLoop), "", field(&VideoDef::loop),
-         "how often a .gif, .apng or .webp plays", "0: for ever"},
+         "how often a .gif plays", "0: for ever"},
         {"video", "codec", one_of(media::codec_names()), "",
          otherwise("the ending's", encoder(&EncoderDef::codec)), "the encoder",
          "h264, h265, av1, vp9 and so on stand for libav's names"},

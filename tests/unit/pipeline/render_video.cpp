@@ -92,7 +92,7 @@ TEST_F(RenderVideo, WritesEveryFrameOnce) {
 }
 
 TEST_F(RenderVideo, CountsFramesOfAnimationsTwiceAndCanBeStoppedAnyTime) {
-    for (const std::string name : {"a.gif", "a.apng", "a.webp"}) {
+    for (const std::string name : {"a.gif"}) {
         Scene scene = parse_scene(kVideoRope, "rope.toml");
         scene.video.encoder.preset.clear();
         Film film(scene);

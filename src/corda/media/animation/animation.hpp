@@ -29,38 +29,12 @@ struct AnimationDef {
     int threads = 1;  ///< change the time that it takes, and no byte
 };
 
-/// Refuses an animation of one frame that would be a picture. Throws corda::Error (kUsage).
-void check_animation_frames(const Ending& ending, std::int64_t frames);
-
-/// Makes an animation of an ending. A few pictures per thread are in memory at a time, and all encoded frames
-/// of a .webp. Throws corda::Error: kIo, kEncoder, kInterrupted if cancelled.
-void write_animation(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
-                     OutputFile& output);
-
-// As write_animation, of one format: Codec::write.
-
-/// One palette for all frames; each frame holds the pixels that changed.
+/// Makes a GIF with one palette for all frames; each frame holds the pixels that changed. A few pictures per
+/// thread are in memory at a time. Throws corda::Error: kIo, kEncoder, kInterrupted if cancelled.
 void write_gif(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
                OutputFile& output);
-/// Lossless, with all levels of transparency; each frame is the rectangle that has changed. (libavcodec's
-/// encoder tries all ways to lay a frame over the last one, in four times the time for more bytes.)
-void write_apng(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
-                OutputFile& output);
-/// The same.
-void write_webp(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
-                OutputFile& output);
 
-/// Changes of an animation frame.
-struct PictureChange {
-    /// Where the frame differs from the last one, from even columns and rows on; one pixel if it does not.
-    PixelRect part;
-    /// That part of the frame. If it is to be blended over the last frame, pixels that stay as they are have
-    /// no colour and are transparent, which takes fewer bytes.
-    Image picture;
-    bool is_blended = false;
-};
-
-/// The exact pictures of chunks, one after the other, and what each of them changes.
+/// The exact pictures of chunks, one after the other.
 class LosslessFrames {
   public:
     explicit LosslessFrames(std::vector<ChunkFile> chunks) : chunks_(std::move(chunks)) {}
@@ -68,13 +42,9 @@ class LosslessFrames {
     /// Goes on to picture `k`, which must come after the current one. Throws corda::Error (kIo).
     void go_to(std::int64_t k);
     [[nodiscard]] const Image& picture() const { return picture_; }
-    /// The change since the picture before; of picture 0, all of it. Opaque pictures are blended.
-    [[nodiscard]] PictureChange change() const;
 
   private:
-    /// Opens the chunk of picture `k`, unless it is open.
-    void enter(std::int64_t k);
-    void read(Image& picture);
+    /// Decodes picture next_.
     void decode();
 
     std::vector<ChunkFile> chunks_;
@@ -84,7 +54,6 @@ class LosslessFrames {
     std::int64_t end_ = 0;            ///< of the open one
     std::int64_t next_ = 0;
     Image picture_;
-    Image last_;  ///< the picture before
 };
 
 /// Makes something of the frames first <= k < end. If `all` is stopped, the result is dropped.
@@ -113,28 +82,6 @@ void for_each_section(const AnimationDef& def, const OnProgress& on_progress,
         take(std::move(*section));
         ++taken;
     }
-}
-
-/// Makes something of each frame, and takes it in order.
-template <class Frame>
-void for_each_frame(const AnimationDef& def, const OnProgress& on_progress,
-                    const std::function<Frame(const LosslessFrames&)>& make,
-                    const std::function<void(const Frame&)>& take) {
-    using Section = std::vector<Frame>;
-    const auto new_maker = [&] {
-        const auto pictures = std::make_shared<LosslessFrames>(def.chunks);
-        return [pictures, &make](std::int64_t first, std::int64_t end, const OrderedWorkers<Section>& all) {
-            Section section;
-            for (std::int64_t k = first; k < end && !all.is_stopped(); ++k) {
-                pictures->go_to(k);
-                section.push_back(make(*pictures));
-            }
-            return section;
-        };
-    };
-    for_each_section<Section>(def, on_progress, new_maker, [&take](const Section& section) {
-        for (const Frame& frame : section) take(frame);
-    });
 }
 
 }  // namespace corda::media

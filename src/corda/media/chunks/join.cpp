@@ -233,8 +233,7 @@ void join_chunks(const ChunkRun& run, const Manifest& manifest, const std::strin
             return true;
         };
         const int threads = animation_threads(def.jobs, ending, first.parameters());
-        write_animation(ending, {run.chunks, run.frames, manifest.fps, manifest.loop, threads}, encoded,
-                        output);
+        write_gif(ending, {run.chunks, run.frames, manifest.fps, manifest.loop, threads}, encoded, output);
     } else {
         colors = copy(chunks_of(run, manifest.fps), manifest, ending, first, output);
     }

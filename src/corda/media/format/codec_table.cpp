@@ -85,11 +85,6 @@ constexpr std::array kRawPlayers{Players{
     "yuv4mpegpipe", "", "for encoders such as ffmpeg; browsers, QuickTime and PowerPoint do not play it"}};
 constexpr std::array kGifPlayers{
     Players{"gif", "", "browsers and PowerPoint play it; QuickTime does not, and YouTube takes no GIF"}};
-constexpr std::array kApngPlayers{Players{
-    "apng", "", "browsers play it; PowerPoint, QuickTime and YouTube show its first picture or refuse it"}};
-constexpr std::array kWebpPlayers{
-    Players{"webp", "", "browsers play it; PowerPoint, QuickTime and YouTube do not"}};
-
 /// Table A-1 of Rec. ITU-T H.264 (08/2021), in macroblocks.
 constexpr std::array kH264Levels{
     Level{10, 99, 1485},        Level{11, 396, 3000},       Level{12, 396, 6000},
@@ -303,8 +298,6 @@ constexpr std::array kCodecs{
           .disk_bytes = {0.0015, 0.16},
           .players = kFfv1Players,
           .options = &ffv1_options},
-    // Its bytes are those of the animation that is made of it: the first thread of a WebP; a further one
-    // adds 26.
     Codec{.name = "qtrle",
           .short_name = "rle",
           .standard = "QuickTime Animation",
@@ -338,22 +331,6 @@ constexpr std::array kCodecs{
           .tolerance = kGifTolerance,
           .players = kGifPlayers,
           .write = &write_gif},
-    Codec{.name = "apng",
-          .short_name = "apng",
-          .standard = "APNG",
-          .stream = "apng",
-          .disk_bytes = {0.001, 0.034},
-          .players = kApngPlayers,
-          .write = &write_apng},
-    Codec{.name = "webp",
-          .short_name = "webp",
-          .standard = "WebP",
-          .stream = "webp",
-          .min_frames = 2,
-          .is_built_in = true,
-          .disk_bytes = {8e-4, 0.027},
-          .players = kWebpPlayers,
-          .write = &write_webp},
 };
 
 }  // namespace

@@ -81,9 +81,6 @@ std::string file_kind(const std::string& path) {
     if (at(4, "ftyp")) return "mov";
     if (at(0, "\x1a\x45\xdf\xa3")) return "matroska";
     if (at(0, "GIF8")) return "gif";
-    // What makes a picture an animation comes before its pixels.
-    if (at(0, kPngSignature) && head.find("acTL") < head.find("IDAT")) return "apng";
-    if (at(0, "RIFF") && at(8, "WEBP")) return "webp";
     if (at(0, "YUV4MPEG2 ")) return "yuv4mpegpipe";
     return {};
 }

@@ -15,9 +15,6 @@
 namespace corda::media {
 namespace {
 
-/// WebP stores each side in 14 bits.
-constexpr int kMaxWebpSidePx = (1 << 14) - 1;
-
 constexpr std::array kEndings{
     Ending{".mp4",
            "MP4",
@@ -28,8 +25,6 @@ constexpr std::array kEndings{
     Ending{".mov", "QuickTime", FileKind::kVideo, "mov", {"prores_ks"}},
     Ending{".mkv", "Matroska", FileKind::kVideo, "matroska", {"ffv1"}},
     Ending{".gif", "GIF", FileKind::kAnimation, "gif", {"qtrle"}},
-    Ending{".apng", "APNG", FileKind::kAnimation, "apng", {"qtrle"}},
-    Ending{".webp", "WebP", FileKind::kAnimation, "webp", {"qtrle"}, kMaxWebpSidePx},
     Ending{"%04d.png", "PNG pictures", FileKind::kPictures, "", {"png"}},
     Ending{"-", "YUV4MPEG2", FileKind::kStream, "", {"rawvideo"}},
 };
@@ -163,10 +158,6 @@ void check_size_for(const Format& format, const VideoDef& def) {
         throw_usage("video size {}x{} is too tall for {}; use a height of {} or less, or another codec",
                     def.width_px, def.height_px, codec.name, codec.max_height_px);
     }
-    if (std::max(def.width_px, def.height_px) > ending.max_side_px) {
-        throw_usage("video size {}x{} is too large for {}; use sides of {} or less, or another format",
-                    def.width_px, def.height_px, ending.words, ending.max_side_px);
-    }
 }
 
 void check_preset(const Format& format, const EncoderDef& def) {
@@ -191,9 +182,6 @@ void check_crf(const Format& format, const EncoderDef& def) {
                     : "");
 }
 
-/// Of what counts milliseconds.
-constexpr double kMaxMsRate = 1000.0;
-
 /// The pauses of a GIF are whole hundredths of a second, and pauses shorter than two play slowly.
 void check_gif_rate(Rational fps) {
     constexpr std::int64_t kLongestPause = 65535;
@@ -202,20 +190,16 @@ void check_gif_rate(Rational fps) {
     const std::string possible = is_fast ? "50" : Rational::reduced(100, kLongestPause).text();
     throw_usage(
         "a GIF cannot have {} frames per second: its pauses are 2 to {} hundredths of a second; use {} "
-        "(--fps {}){}",
-        fps.text(), kLongestPause, possible, possible,
-        fps.value() <= kMaxMsRate ? ", or .apng or .webp" : "");
+        "(--fps {}), or another format",
+        fps.text(), kLongestPause, possible, possible);
 }
 
 void check_rate_for(const Format& format, const VideoDef& def) {
     const Rational fps = def.fps.rational();
     const std::string_view muxer = format.ending->muxer;
     if (muxer == "gif") check_gif_rate(fps);
-    if (muxer == "apng" && (fps.num > 65535 || fps.den > 65535))
-        throw_usage(
-            "an APNG cannot have {} frames per second: it counts up to 65535; use a rate such as 30000/1001",
-            fps.text());
-    const bool counts_ms = muxer == "matroska" || muxer == "webm" || muxer == "webp";
+    constexpr double kMaxMsRate = 1000.0;
+    const bool counts_ms = muxer == "matroska" || muxer == "webm";
     if (counts_ms && fps.value() > kMaxMsRate)
         throw_usage("{} cannot have {} frames per second: it counts milliseconds; use {} or less, or .mp4",
                     format.ending->words, fps.text(), kMaxMsRate);

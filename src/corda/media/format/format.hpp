@@ -58,7 +58,7 @@ struct DiskBytes {
 };
 
 /// An encoder: one row of the table of codecs. Measured values of libaom-av1 and h264_nvenc are those of
-/// their like, and the least bytes of PNG are those of APNG.
+/// their like.
 struct Codec {
     const char* name;        ///< libav's: "libx264"
     const char* short_name;  ///< "h264"
@@ -75,7 +75,6 @@ struct Codec {
     int max_height_px = kMaxSidePx;
     /// Most frames of a chunk, for codecs whose frames stand alone; 0: as many as frames_per_chunk() says.
     int chunk_frames = 0;
-    int min_frames = 1;
     bool is_hardware = false;  ///< it may be listed and not work
     bool is_built_in = false;  ///< it needs neither libav nor x264
     bool must_drain = false;   ///< closing it waits forever, unless a stream was begun and ended
@@ -116,7 +115,6 @@ struct Ending {
     const char* muxer;  ///< libav's name; of an animation also its codec's
     /// libav's names of the codecs that it takes, the default first; of an animation, what its chunks hold.
     std::array<const char*, 5> codecs;
-    int max_side_px = kMaxSidePx;
 };
 
 /// How many times all frames are gone through: those of an animation are drawn, and encoded afterwards.

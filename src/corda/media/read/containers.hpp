@@ -38,19 +38,9 @@ struct Mp4Boxes {
 [[nodiscard]] Mp4Boxes read_mp4_boxes(const std::string& path);
 
 /// True if a file of a kind that file_kind() names is shorter than it claims to be: a GIF without its
-/// trailer, a PNG without its last chunk, YUV4MPEG2 that ends in a frame, Matroska of a length that is not
+/// trailer, YUV4MPEG2 that ends in a frame, Matroska of a length that is not
 /// there. Decoders take what there is and do not tell. False for other kinds. Throws corda::Error (kIo) if it
 /// cannot be opened for reading.
 [[nodiscard]] bool is_truncated(const std::string& path, const std::string& kind);
-
-/// Times of the frames of an APNG; libav rounds them.
-struct ApngTimes {
-    Rational delay_s{0, 1};       ///< of the first frame
-    std::int64_t uneven_at = -1;  ///< index of the first frame that has another; -1: none
-};
-
-/// Reads the chunks of an APNG file, up to one that is not whole. Throws corda::Error (kIo) if it cannot be
-/// read.
-[[nodiscard]] ApngTimes read_apng_times(const std::string& path);
 
 }  // namespace corda::media

@@ -11,7 +11,6 @@
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/read/containers.hpp"
 #include "corda/media/read/decoder.hpp"
-#include "corda/media/read/webp_reader.hpp"
 
 namespace corda::media {
 
@@ -52,27 +51,14 @@ bool copy_samples(const AVFrame& frame, StoredPicture& picture) {
 
 }  // namespace
 
-/// libav reads all but animated WebP.
 struct StoredVideo::Impl {
     explicit Impl(const std::string& file) : path(file) {
         const std::string kind = file_kind(path);
         if (is_truncated(path, kind) || (kind == "mov" && !read_mp4_boxes(path).whole))
             throw_error(ExitCode::kIo, "'{}' breaks off before its end; copy or render it again", path);
-        if (kind == "webp") {
-            webp.emplace(path);
-            if (!webp->is_open())
-                throw_error(ExitCode::kIo, "libwebp cannot open '{}' as an animated WebP", path);
-            if (const auto fps = rate_of_ends(webp->stated_ends_ms())) rate = *fps;
-            return;
-        }
         decoder.emplace(path);
         const AVRational fps = decoder->stream().avg_frame_rate;
         if (fps.den > 0) rate = Rational::reduced(fps.num, fps.den);
-        if (kind != "apng") return;  // whose delays libav rounds
-        const ApngTimes times = read_apng_times(path);
-        if (times.delay_s.num <= 0) return;
-        rate = {times.delay_s.den, times.delay_s.num};
-        if (times.uneven_at < 0) delay_s = times.delay_s;
     }
 
     bool decode(StoredPicture& picture) {
@@ -87,27 +73,6 @@ struct StoredVideo::Impl {
         picture.time_s =
             has_time ? static_cast<double>(frame.best_effort_timestamp) * av_q2d(decoder->stream().time_base)
                      : 0.0;
-        if (delay_s)  // libav's stamps, of rounded delays, drift
-            picture.time_s = static_cast<double>(frames++ * delay_s->num) / static_cast<double>(delay_s->den);
-        return true;
-    }
-
-    bool decode_webp(StoredPicture& picture) {
-        if (!webp->has_next()) return false;
-        const std::int64_t start_ms = webp->read_ends_ms().empty() ? 0 : webp->read_ends_ms().back();
-        if (!webp->read(shown)) throw_error(ExitCode::kIo, "{}: decoding failed", path);
-        picture = StoredPicture{};
-        picture.width_px = shown.width();
-        picture.height_px = shown.height();
-        picture.format = "rgba";
-        picture.time_s = static_cast<double>(start_ms) / 1000.0;
-        picture.components = 4;
-        picture.is_rgb = true;
-        picture.is_full_range = true;
-        picture.samples.resize(shown.size_bytes());
-        const std::size_t pixels = shown.size_bytes() / 4;
-        for (std::size_t i = 0; i < shown.size_bytes(); ++i)
-            picture.samples[i % 4 * pixels + i / 4] = shown.data()[i];
         return true;
     }
 
@@ -115,10 +80,6 @@ struct StoredVideo::Impl {
     std::string path;
     Rational rate{0, 1};
     std::optional<Decoder> decoder;
-    std::optional<WebpReader> webp;
-    Image shown;                      ///< by webp
-    std::optional<Rational> delay_s;  ///< of every frame of an APNG that has one delay
-    std::int64_t frames = 0;          ///< read so far of that APNG
 };
 
 void StoredVideo::load_libraries() {
@@ -134,7 +95,7 @@ Rational StoredVideo::rate() const {
 }
 
 bool StoredVideo::read(StoredPicture& picture) {
-    return impl_->decoder ? impl_->decode(picture) : impl_->decode_webp(picture);
+    return impl_->decode(picture);
 }
 
 Image StoredPicture::rgba() const {

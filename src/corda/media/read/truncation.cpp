@@ -44,15 +44,6 @@ bool gif_has_trailer(ByteReader& bytes) {
     }
 }
 
-bool png_has_last_chunk(ByteReader& bytes) {
-    if (!bytes.skip(kPngSignature.size())) return false;
-    for (auto chunk = next_png_chunk(bytes); chunk; chunk = next_png_chunk(bytes)) {
-        if (!bytes.skip(chunk->length + PngChunk::kChecksumBytes)) return false;
-        if (chunk->type == "IEND") return true;
-    }
-    return false;
-}
-
 bool matroska_is_whole(ByteReader& bytes) {
     constexpr std::uint64_t kHeadId = 0x1a45dfa3;
     constexpr std::uint64_t kSegmentId = 0x18538067;
@@ -111,34 +102,9 @@ bool yuv_is_whole(ByteReader& bytes) {
 bool is_truncated(const std::string& path, const std::string& kind) {
     ByteReader bytes = ByteReader::of_file(path);
     if (kind == "gif") return !gif_has_trailer(bytes);
-    if (kind == "apng") return !png_has_last_chunk(bytes);
     if (kind == "matroska") return !matroska_is_whole(bytes);
     if (kind == "yuv4mpegpipe") return !yuv_is_whole(bytes);
     return false;
-}
-
-ApngTimes read_apng_times(const std::string& path) {
-    constexpr std::uint64_t kBytesBeforeDelay = 20;  // of an fcTL: its number, size and place
-    ByteReader bytes = ByteReader::of_file(path);
-    ApngTimes times;
-    std::int64_t frames = 0;
-    if (!bytes.skip(kPngSignature.size())) return times;
-    for (auto chunk = next_png_chunk(bytes); chunk; chunk = next_png_chunk(bytes)) {
-        const std::uint64_t end = bytes.position() + chunk->length + PngChunk::kChecksumBytes;
-        if (chunk->type == "fcTL") {
-            if (!bytes.skip(kBytesBeforeDelay)) break;
-            const auto num = bytes.number(2);
-            const auto den = bytes.number(2);
-            if (!num || !den) break;
-            const auto delay = Rational::reduced(static_cast<std::int64_t>(*num),
-                                                 *den == 0 ? 100 : static_cast<std::int64_t>(*den));
-            if (frames == 0) times.delay_s = delay;
-            if (delay != times.delay_s && times.uneven_at < 0) times.uneven_at = frames;
-            ++frames;
-        }
-        if (end < bytes.position() || !bytes.skip(end - bytes.position())) break;
-    }
-    return times;
 }
 
 }  // namespace corda::media

@@ -174,7 +174,7 @@ void check_tag(VerifyReport& report, const char* name, const std::string& value,
 
 /// Whether colours need tags: kinds of pictures are sRGB by definition, raw video has none.
 bool has_tags(const VerifyReport& report) {
-    return !holds_word("gif apng webp yuv4mpegpipe", report.container);
+    return !holds_word("gif yuv4mpegpipe", report.container);
 }
 
 }  // namespace

@@ -50,10 +50,6 @@ struct DecodedVideo {
 [[nodiscard]] DecodedVideo decode(const std::string& path, VerifyDepth depth, std::optional<Rational> stated,
                                   const std::vector<FrameColors>& rendered, VerifyReport& report);
 
-/// The same for an animated WebP, by libwebp. `stated`: see rate_of_ends().
-[[nodiscard]] DecodedVideo decode_webp(const std::string& path, std::optional<Rational> stated,
-                                       const std::vector<FrameColors>& rendered, VerifyReport& report);
-
 /// Rendered colours of a frame; null if `rendered`, in the order of the frames, has none.
 [[nodiscard]] const FrameColors* find_rendered(const std::vector<FrameColors>& rendered, std::int64_t frame);
 

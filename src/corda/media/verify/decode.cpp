@@ -15,7 +15,6 @@
 #include "corda/media/read/containers.hpp"
 #include "corda/media/read/decoder.hpp"
 #include "corda/media/read/video_comment.hpp"
-#include "corda/media/read/webp_reader.hpp"
 #include "corda/media/verify/checks.hpp"
 
 namespace corda::media {
@@ -69,6 +68,47 @@ std::array<double, 3> mean_rgb_of(const AVFrame& frame, const PixelRect& part) {
 
 constexpr std::int64_t kGifTicks = 100;  // per second
 
+bool fits(Rational fps, const std::vector<std::int64_t>& ends, std::int64_t ticks_per_second) {
+    std::int64_t k = 0;
+    return std::ranges::all_of(ends, [&](std::int64_t end) {
+        ++k;
+        return (2 * ticks_per_second * k * fps.den + fps.num) / (2 * fps.num) == end;
+    });
+}
+
+/// The fraction of smallest denominator that fits.
+std::optional<Rational> simplest_rate(const std::vector<std::int64_t>& ends, std::int64_t ticks_per_second) {
+    constexpr std::int64_t kMaxDenominator = 10'000;
+    double low = 0.0;  // that fitting rates are above, and those up to which they are
+    double high = 2.0 * static_cast<double>(ticks_per_second);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        const double frames = 2.0 * static_cast<double>(ticks_per_second) * static_cast<double>(i + 1);
+        const double twice_end = 2.0 * static_cast<double>(ends[i]);
+        low = std::max(low, frames / (twice_end + 1.0));
+        if (twice_end > 0.0) high = std::min(high, frames / (twice_end - 1.0));
+    }
+    for (std::int64_t den = 1; den <= kMaxDenominator; ++den) {
+        const auto num = static_cast<std::int64_t>(std::floor(high * static_cast<double>(den)));
+        if (num > 0 && static_cast<double>(num) > low * static_cast<double>(den) &&
+            fits({num, den}, ends, ticks_per_second))
+            return Rational{num, den};
+    }
+    return std::nullopt;
+}
+
+/// The rate whose frames, rounded to ticks, end at these times: `stated`, a usual one, or the simplest.
+std::optional<Rational> rate_of_ends(const std::vector<std::int64_t>& ends, std::optional<Rational> stated,
+                                     std::int64_t ticks_per_second) {
+    if (ends.empty() || ends.back() <= 0) return std::nullopt;
+    if (stated && fits(*stated, ends, ticks_per_second)) return stated;
+    for (const Rational usual :
+         {Rational{60, 1}, Rational{30, 1}, Rational{25, 1}, Rational{24, 1}, Rational{50, 1},
+          Rational{30000, 1001}, Rational{24000, 1001}, Rational{60000, 1001}})
+        if (fits(usual, ends, ticks_per_second)) return usual;
+    const Rational mean = Rational::reduced(ticks_per_second * std::ssize(ends), ends.back());
+    return mean.den == 1 && fits(mean, ends, ticks_per_second) ? mean : simplest_rate(ends, ticks_per_second);
+}
+
 /// Decodes one file and fills in a DecodedVideo.
 class Decoding {
   public:
@@ -121,7 +161,6 @@ class Decoding {
         video_.comment = metadata_entry(decoder_->format(), "comment");
         video_.tick = {stream.time_base.num, stream.time_base.den};
         find_rounded_rate();
-        if (is_kind("apng")) take_delays(read_apng_times(path));
         is_gif_ = is_kind("gif");
         counts_frames_ = counts_frames_ || is_gif_;
         return true;
@@ -141,14 +180,6 @@ class Decoding {
         rounded_to_ = rate;
         video_.is_rounded = true;
         video_.tick = {rate.den, rate.num};
-    }
-
-    /// Of an APNG, whose stamps libav rounds.
-    void take_delays(const ApngTimes& times) {
-        if (times.delay_s.num <= 0) return;
-        counts_frames_ = true;
-        video_.tick = times.delay_s;
-        video_.uneven_at = times.uneven_at;
     }
 
     /// A GIF counts hundredths, and its delays are rounded unless all are equal.
@@ -327,46 +358,6 @@ DecodedVideo decode(const std::string& path, VerifyDepth depth, std::optional<Ra
                     const std::vector<FrameColors>& rendered, VerifyReport& report) {
     DecodedVideo video;
     Decoding(video, report, depth, stated, rendered).run(path);
-    return video;
-}
-
-DecodedVideo decode_webp(const std::string& path, std::optional<Rational> stated,
-                         const std::vector<FrameColors>& rendered, VerifyReport& report) {
-    DecodedVideo video;
-    WebpReader reader(path);
-    video.opened = reader.is_open();
-    if (!video.opened) {
-        video.open_reason = "libwebp does not open the file";
-        return video;
-    }
-    report.codec = "webp";
-    report.pixel_format = "rgba";
-    report.width_px = reader.width_px();
-    report.height_px = reader.height_px();
-    video.is_rounded = true;
-    for (Image picture; reader.has_next(); ++report.frames) {
-        check_cancelled();
-        if (!reader.read(picture)) {
-            video.bad_reason = "libwebp does not decode a frame";
-            ++video.bad_frames;
-            break;
-        }
-        if (const FrameColors* const colors = find_rendered(rendered, report.frames))
-            for (const ColorPatch& patch : colors->patches)
-                if (is_within(patch, picture.width(), picture.height()))
-                    video.patches.push_back({report.frames, patch, mean_rgb(picture, patch.x, patch.y)});
-        if (report.frames > 0) continue;
-        for (std::size_t i = 3; i < picture.size_bytes() && !report.alpha; i += 4)
-            report.alpha = picture.data()[i] < 255;
-    }
-    video.step = 1;
-    video.end = report.frames;
-    const auto fps = rate_of_ends(reader.read_ends_ms(), stated);
-    if (fps) {
-        video.tick = {fps->den, fps->num};
-    } else {
-        video.uneven_at = 1;
-    }
     return video;
 }
 

@@ -165,8 +165,7 @@ VerifyReport verify(const std::string& path, VerifyDepth depth, const std::vecto
     if (is_truncated(path, kind))
         problem(report, "the file breaks off before its end; copy or render it again");
     if (kind.empty() || (kind == "mov" && !boxes.has_index)) return report;
-    const DecodedVideo video = kind == "webp" ? decode_webp(path, fps, rendered, report)
-                                              : decode(path, depth, fps, rendered, report);
+    const DecodedVideo video = decode(path, depth, fps, rendered, report);
     if (!video.opened) {
         problem(report, "{}; the file is damaged: copy or render it again", video.open_reason);
         return report;

@@ -59,7 +59,7 @@ enum class VerifyDepth { kKeyFrames, kAllFrames };
 /// ones) and its clocks an exact duration, profile, pixel format and colour tags, and that every frame
 /// decodes that is to be decoded. If the file's comment says that corda made it, also frame count, rate and
 /// some colours of the first frame against the rendered ones; a caller that rendered it can pass more of
-/// them in `rendered`, in the order of the frames, and in `fps` the rate, which a WebP of a few frames does
+/// them in `rendered`, in the order of the frames, and in `fps` the rate, which a GIF of a few frames does
 /// not show. What the other frames show is not compared with anything: a change that still decodes is not
 /// found.
 ///

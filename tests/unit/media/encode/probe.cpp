@@ -19,7 +19,7 @@ TEST(Probe, TriesEveryEncoderOfEveryEndingTheDefaultFirst) {
         last = probe.ending;
     }
     EXPECT_EQ(defaults,
-              ".mp4 libx264; .webm libvpx-vp9; .mov prores_ks; .mkv ffv1; .gif gif; .apng apng; .webp webp; "
+              ".mp4 libx264; .webm libvpx-vp9; .mov prores_ks; .mkv ffv1; .gif gif; "
               "%04d.png png; - rawvideo; ");
 }
 

@@ -54,10 +54,6 @@ constexpr std::array kVariants{
     Variant{"ffv1", ".mkv", "", kAny, false, 0.0},
     Variant{"ffv1_alpha", ".mkv", "", kAny, true, 0.0},
     Variant{"gif", ".gif", "", kAny, false, 0.0},
-    Variant{"apng", ".apng", "", kAny, false, 0.0},
-    Variant{"apng_alpha", ".apng", "", kAny, true, 0.0},
-    Variant{"webp", ".webp", "", kAny, false, 0.0},
-    Variant{"webp_alpha", ".webp", "", kAny, true, 0.0},
 };
 
 /// More than one chunk of the codecs whose frames stand alone, and than one section of an animation.
@@ -204,34 +200,12 @@ TEST_F(Video, VerifyFindsWrongChecksumsOfFfv1) {
     EXPECT_THAT(all_problems(verify(file("b.mkv"))), testing::HasSubstr("slice CRC mismatch"));
 }
 
-TEST_F(Video, AWebpOfAnyRateAndCountIsSound) {
-    for (const Rational fps : {Rational{60000, 1001},
-                               {30000, 1001},
-                               {24000, 1001},
-                               {120000, 1001},
-                               {100, 1},
-                               {1000, 1},
-                               {2997, 100},
-                               {1197, 50},
-                               {7, 3},
-                               {1, 7}}) {
-        for (const std::int64_t frames : {2, 3, 10, 30}) {
-            make_video(file("a.webp"), small_video(fps), frames);
-            const VerifyReport report = verify(file("a.webp"));  // which is not told the rate
-            EXPECT_TRUE(report.ok()) << fps.text() << " " << frames << all_problems(report);
-            EXPECT_NEAR(report.fps.value() / fps.value(), 1.0, 0.6 / static_cast<double>(frames));
-        }
-    }
-}
-
 TEST_F(Video, VerifyTellsCodecsAndTheProfilesOfThoseThatHaveAny) {
     for (const auto& [ending, words] : {std::pair{".mp4", "h264 High 2.1"},
                                         {".mov", "prores 4444"},
                                         {".mkv", "ffv1"},
                                         {".webm", "vp9 Profile 0"},
-                                        {".gif", "gif"},
-                                        {".apng", "apng"},
-                                        {".webp", "webp"}}) {
+                                        {".gif", "gif"}}) {
         const std::string path = file(std::string("a") + ending);
         make_video(path, small_video({50, 1}), 3);
         EXPECT_EQ(verify(path).coding(), words);
@@ -241,7 +215,7 @@ TEST_F(Video, VerifyTellsCodecsAndTheProfilesOfThoseThatHaveAny) {
 TEST_F(Video, EveryContainerKeepsRatesThatAreNoWholeNumbers) {
     for (const Rational fps :
          {Rational{30000, 1001}, Rational{24000, 1001}, Rational{30, 1}, Rational{60, 1}}) {
-        for (const char* const ending : {".mp4", ".mov", ".webm", ".mkv", ".apng", ".webp"}) {
+        for (const char* const ending : {".mp4", ".mov", ".webm", ".mkv"}) {
             const std::string path = file(std::string("a") + ending);
             make_video(path, small_video(fps), 7);
             const VerifyReport report = verify(path);
@@ -253,21 +227,10 @@ TEST_F(Video, EveryContainerKeepsRatesThatAreNoWholeNumbers) {
 }
 
 TEST_F(Video, OneFrameIsAVideoWhereAContainerHoldsOne) {
-    for (const char* const ending : {".mp4", ".mov", ".webm", ".mkv", ".gif", ".apng"}) {
+    for (const char* const ending : {".mp4", ".mov", ".webm", ".mkv", ".gif"}) {
         const std::string path = file(std::string("a") + ending);
         EXPECT_NO_THROW(make_video(path, small_video({25, 1}), 1)) << path;
         EXPECT_EQ(verify(path).frames, 1) << path;
-    }
-    const std::string path = file("a.webp");  // which would be a picture
-    const auto check = [&] {
-        static_cast<void>(
-            check_video_output({.path = path, .def = small_video({25, 1}), .first = 7, .end = 8}));
-    };
-    for (const test::Failure& failure : {test::failure_of(check), test::failure_of([&] {
-                                             make_video(path, small_video({25, 1}), 1);
-                                         })}) {
-        EXPECT_EQ(failure.code, ExitCode::kUsage);
-        EXPECT_THAT(failure.message, testing::HasSubstr("use .apng, or .png (corda still)"));
     }
 }
 
@@ -314,10 +277,6 @@ TEST_F(Video, AnAnimationPlaysAsOftenAsAsked) {
     EXPECT_TRUE(has(bytes_of(".gif", 0), "NETSCAPE2.0\x03\x01\0\0"s));
     EXPECT_TRUE(has(bytes_of(".gif", 3), "NETSCAPE2.0\x03\x01\x02\0"s));  // repetitions
     EXPECT_FALSE(has(bytes_of(".gif", 1), "NETSCAPE2.0"));
-    EXPECT_TRUE(has(bytes_of(".apng", 0), "acTL\0\0\0\x03\0\0\0\0"s));
-    EXPECT_TRUE(has(bytes_of(".apng", 3), "acTL\0\0\0\x03\0\0\0\x03"s));
-    EXPECT_EQ(bytes_of(".webp", 0).substr(bytes_of(".webp", 0).find("ANIM") + 12, 2), "\0\0"s);
-    EXPECT_EQ(bytes_of(".webp", 3).substr(bytes_of(".webp", 3).find("ANIM") + 12, 2), "\x03\0"s);
 }
 
 TEST_F(Video, AGifOfManyColoursHasTheNearest) {

@@ -10,7 +10,7 @@ namespace corda::media {
 namespace {
 
 TEST_F(Video, BreaksOffIfAnyOfItsLastBytesIsMissing) {
-    for (const char* const ending : {".gif", ".apng", ".webm", ".mkv"}) {
+    for (const char* const ending : {".gif", ".webm", ".mkv"}) {
         const std::string path = file(std::string("a") + ending);
         make_video(path, small_video({50, 1}), 3);
         EXPECT_FALSE(is_truncated(path, file_kind(path))) << ending;
