@@ -1,4 +1,4 @@
-// `corda compare` on pictures made by hand, and on videos.
+// `corda compare` on pictures made by hand.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -54,13 +54,6 @@ class CompareFiles : public testing::Test {
         const auto result = run_corda(arguments);
         EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 7) << result.err;
         return nlohmann::json::parse(result.out, nullptr, false);
-    }
-
-    /// A video of ffmpeg's test source.
-    std::string video(const std::string& name, const std::string& options) {
-        const auto made = run_shell("ffmpeg -v error -f lavfi -i " + options + " " + file(name));
-        EXPECT_EQ(made.exit_code, 0) << made.err;
-        return file(name);
     }
 };
 
@@ -170,92 +163,6 @@ TEST_F(CompareFiles, LeavesComparedFoldersAlone) {
     EXPECT_EQ(read_png(file("b/one.png")), drawn(10));
     EXPECT_EQ(code({file("a"), file("b"), "--diff", file("diff")}), 7);
     EXPECT_TRUE(std::filesystem::exists(file("diff/one.png")));
-}
-
-TEST_F(CompareFiles, VideosFrameByFrame) {
-    const std::string source = "testsrc=size=64x48:rate=25:duration=0.4";
-    const std::string lossless = " -c:v ffv1 -pix_fmt bgr0";
-    const std::string a = video("a.mkv", source + lossless);
-    const std::string same = video("same.mkv", source + lossless);
-    EXPECT_EQ(code({a, same}), 0);
-    EXPECT_THAT(run_corda({"compare", a, same}).out, HasSubstr("equal: 10 frames"));
-    const std::string box = "\"" + source + ",drawbox=x=8:y=8:w=4:h=4:c=red:t=fill:enable='eq(n,7)'\"";
-    const std::string b = video("b.mkv", box + lossless);
-    const auto json = report({a, b, "--diff", file("d.png")});
-    EXPECT_EQ(json["passed"], false);
-    EXPECT_EQ(json["differing_frames"], 1);
-    EXPECT_EQ(json["worst_frame"], 7);
-    EXPECT_NEAR(json["worst_time_s"].get<double>(), 0.28, 1e-9);
-    EXPECT_EQ(read_png(file("d.png")).width(), 64);
-    EXPECT_EQ(code({a, b, "--share", "0.01"}), 0);
-    EXPECT_EQ(code({a, b, "--share", "0.001"}), 7);
-}
-
-TEST_F(CompareFiles, WorstFrameExceedsTheLimitsIfAnyFrameDoes) {
-    const std::string black = "color=c=black:size=64x48:rate=25:duration=0.4,format=rgb24";
-    const std::string lossless = " -c:v ffv1 -pix_fmt bgr0";
-    const std::string a = video("a.mkv", black + lossless);
-    // A few bright pixels in frame 3, many dark ones in frame 7.
-    const std::string b = video("b.mkv", "\"" + black +
-                                             ",drawbox=w=2:h=2:c=white:t=fill:enable='eq(n,3)'"
-                                             ",drawbox=w=40:h=40:c=0x202020:t=fill:enable='eq(n,7)'\"" +
-                                             lossless);
-    EXPECT_EQ(report({a, b})["worst_frame"], 7);
-    const auto limited = report({a, b, "--max", "100"});
-    EXPECT_EQ(limited["worst_frame"], 3);
-    EXPECT_EQ(limited["failed_frames"], 1);
-    EXPECT_EQ(limited["max"], 255);
-    EXPECT_NEAR(limited["share"].get<double>(), 1600.0 / (64.0 * 48.0), 1e-12);
-    for (const char* const limit : {"max", "mean", "share"}) {  // the reported values suffice as limits
-        const auto told = report({a, b})[limit].get<double>();
-        EXPECT_EQ(code({a, b, std::string("--") + limit, std::to_string(std::min(told + 1e-6, 255.0))}), 0)
-            << limit;
-    }
-}
-
-TEST_F(CompareFiles, VideosWithOtherCountsSizesRatesAndFormats) {
-    const std::string a = video("a.mp4", "testsrc=size=64x48:rate=25:duration=0.4 -pix_fmt yuv420p");
-    const auto words = [&](const std::string& name, const std::string& options) {
-        const auto result = run_corda({"compare", a, video(name, options), "--max", "255"});
-        EXPECT_EQ(result.exit_code, 7) << result.err;
-        return result.out;
-    };
-    EXPECT_THAT(words("longer.mp4", "testsrc=size=64x48:rate=25:duration=0.6 -pix_fmt yuv420p"),
-                HasSubstr("different numbers of frames: 10 and 15"));
-    EXPECT_THAT(words("larger.mp4", "testsrc=size=64x64:rate=25:duration=0.4 -pix_fmt yuv420p"),
-                HasSubstr("different sizes: 64x48 and 64x64"));
-    EXPECT_THAT(words("faster.mp4", "testsrc=size=64x48:rate=50:duration=0.2 -pix_fmt yuv420p"),
-                HasSubstr("different rates: 25 and 50"));
-    const std::string exact = video("b.mp4", "testsrc=size=64x48:rate=25:duration=0.4 -pix_fmt yuv444p");
-    EXPECT_EQ(code({a, exact}), 7);
-    EXPECT_EQ(code({a, exact, "--mean", "10"}), 0);
-}
-
-TEST_F(CompareFiles, SizeChangesWithinAVideo) {
-    const auto made =
-        run_shell("cd " + test::quoted(file("")) +
-                  " && for size in 64x48 32x48; do ffmpeg -v error -f lavfi -i "
-                  "testsrc=size=$size:rate=25:duration=0.12 -c:v mjpeg $size.mjpeg; done && "
-                  "cat 64x48.mjpeg 32x48.mjpeg 64x48.mjpeg | ffmpeg -v error -f mjpeg -i - -c copy a.mkv && "
-                  "cat 64x48.mjpeg 64x48.mjpeg 64x48.mjpeg | ffmpeg -v error -f mjpeg -i - -c copy b.mkv");
-    ASSERT_EQ(made.exit_code, 0) << made.err;
-    const auto result = run_corda({"compare", file("a.mkv"), file("b.mkv")});
-    EXPECT_EQ(result.exit_code, 7);
-    EXPECT_THAT(result.out, HasSubstr("different sizes: 32x48 and 64x48"));
-}
-
-TEST_F(CompareFiles, DamagedVideosAreReported) {
-    const std::string a = video("a.mp4", "testsrc=size=64x48:rate=25:duration=0.4 -c:v mpeg4 -bf 2");
-    std::string bytes = test::read_file(a);
-    const std::size_t data = bytes.find("mdat");
-    for (std::size_t i = data + 300; i < data + 1500; i += 100) bytes[i] = static_cast<char>(bytes[i] ^ 0x5a);
-    test::write_file(file("bad.mp4"), bytes);
-    for (const auto& pair : {std::pair{a, file("bad.mp4")}, {file("bad.mp4"), a}}) {
-        const auto result = run_corda({"compare", pair.first, pair.second});
-        EXPECT_EQ(result.exit_code, 6) << result.out;
-        EXPECT_THAT(result.err, HasSubstr("corda: error:"));
-    }
-    EXPECT_EQ(code({a, put("a.png", drawn())}), 2);
 }
 
 }  // namespace

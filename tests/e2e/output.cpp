@@ -462,8 +462,7 @@ TEST_F(Output, DoctorReportsCapabilities) {
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const json report = json::parse(result.out);
     EXPECT_EQ(report["can_draw"], true);
-    EXPECT_EQ(report["can_write"],
-              (json{".mp4", ".webm", ".mov", ".mkv", ".gif", "%04d.png", "-"}));
+    EXPECT_EQ(report["can_write"], (json{".mp4", ".webm", ".mov", ".mkv", ".gif", "%04d.png", "-"}));
     ASSERT_FALSE(report["contexts"].empty());
     for (const json& context : report["contexts"]) {
         const char* key = context["usable"] == true ? "gl_renderer" : "reason";

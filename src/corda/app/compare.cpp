@@ -1,22 +1,24 @@
-#include "compare.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <set>
+#include <string>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "console.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/workers.hpp"
+#include "corda/golden/compare.hpp"
 #include "corda/golden/suite.hpp"
 #include "corda/media/defs.hpp"
 #include "interrupt.hpp"
@@ -26,8 +28,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct CompareOptions {
+    std::string a;
+    std::string b;
+    DifferenceLimits limits;
+    std::string mask;
+    std::string diff;
+    bool force = false;
+};
+
 bool is_png(const fs::path& path) {
     return path.extension() == ".png";
+}
+
+/// The figures of a difference; null if the sizes differ.
+nlohmann::json figures_json(const Difference& difference) {
+    const auto figure = [&](const nlohmann::json& value) {
+        return difference.same_size ? value : nlohmann::json();
+    };
+    return {{"equal", difference.equal},
+            {"same_size", difference.same_size},
+            {"max", figure(golden::max_json(difference))},
+            {"mean", figure(difference.mean)},
+            {"share", figure(difference.share)}};
 }
 
 /// A comparison of two pictures.
@@ -227,36 +250,19 @@ ExitCode compare(const Console& console, const CompareOptions& options) {
                     is_folder ? options.a : options.b, is_folder ? options.b : options.a);
     }
     if (is_folder) return compare_folders(console, options, mask);
-    const bool is_video = is_video_name(options.a);
-    if (is_video != is_video_name(options.b)) {
-        throw_usage("'{}' is a video and '{}' is none; name two videos, or two pictures",
-                    is_video ? options.a : options.b, is_video ? options.b : options.a);
-    }
     check_diff(options);
-    return is_video ? compare_videos(console, options, mask) : compare_pictures(console, options, mask);
+    return compare_pictures(console, options, mask);
 }
 
 }  // namespace
 
-nlohmann::json figures_json(const Difference& difference) {
-    const auto figure = [&](const nlohmann::json& value) {
-        return difference.same_size ? value : nlohmann::json();
-    };
-    return {{"equal", difference.equal},
-            {"same_size", difference.same_size},
-            {"max", figure(golden::max_json(difference))},
-            {"mean", figure(difference.mean)},
-            {"share", figure(difference.share)}};
-}
-
 void add_compare(CLI::App& app, Action& action) {
     auto [command, options] = add_command(
         app, action, "compare",
-        "compare two PNG files, those of two folders, or the frames of two videos; exit 7 if they differ (by "
-        "more than the limits)",
+        "compare two PNG files, or those of two folders; exit 7 if they differ (by more than the limits)",
         compare);
-    command.add_option("A", options.a, "PNG file, folder, or video")->required();
-    command.add_option("B", options.b, "PNG file, folder, or video: the reference")->required();
+    command.add_option("A", options.a, "PNG file or folder")->required();
+    command.add_option("B", options.b, "PNG file or folder: the reference")->required();
     command
         .add_option("--max", options.limits.max,
                     "largest difference of a channel that passes; with no limit only equal pictures pass")
@@ -267,9 +273,10 @@ void add_compare(CLI::App& app, Action& action) {
         ->check(within(0.0, 1.0));
     command.add_option("--mask", options.mask,
                        "PNG file of the same size: its black pixels are not compared");
-    command.add_option("--diff", options.diff,
-                       "write a picture of the differences to this PNG file, of two videos that of the worst "
-                       "frame, or of each pair that differs to this folder");
+    command.add_option(
+        "--diff", options.diff,
+        "write a picture of the differences to this PNG file, or of each pair that differs to this "
+        "folder");
     command.add_flag("--force", options.force, "replace existing pictures of differences");
 }
 
