@@ -6,6 +6,7 @@
 
 #include "corda/media/defs.hpp"
 #include "support/command.hpp"
+#include "support/probe.hpp"
 
 namespace {
 
@@ -129,8 +130,7 @@ TEST_F(FormatsOfRender, StandardOutputContainsOnlyThePictures) {
     const std::string bytes = read_file(folder_.file("a.y4m"));
     EXPECT_THAT(bytes.substr(0, bytes.find('\n')), HasSubstr("YUV4MPEG2 W96 H64 F25:1 Ip A1:1 C420mpeg2"));
     EXPECT_EQ(bytes.size(), bytes.find('\n') + 1 + 38 * (6 + 96 * 64 * 3 / 2));
-    const auto verified = run_corda({"verify", folder_.file("a.y4m"), "--json"});
-    EXPECT_EQ(json::parse(verified.out)["frames"], 38) << verified.out;
+    EXPECT_EQ(corda::test::probe(folder_.file("a.y4m")).frames, 38);
 }
 
 TEST_F(FormatsOfRender, AClosedPipeEndsRenderQuietly) {
@@ -178,7 +178,7 @@ TEST_F(FormatsOfRender, WithoutX264AnotherEncoderIsUsedAndNamed) {
     EXPECT_THAT(result.err,
                 HasSubstr("libx264, the default of .mp4, is not available: encoding with libsvtav1 (AV1)"));
     EXPECT_EQ(json::parse(result.out)["encoder"], "libsvtav1");
-    EXPECT_EQ(json::parse(run_corda({"verify", video, "--json"}).out)["codec"], "av1");
+    EXPECT_EQ(corda::test::probe(video).codec, "av1");
 
     const auto asked = run("render " + scene_ + " -o " + folder_.file("b.mp4") + " --codec libx264");
     EXPECT_EQ(asked.exit_code, 5);

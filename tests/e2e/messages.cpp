@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -71,16 +70,6 @@ TEST_F(Messages, NameTheValuesOfAnOption) {
         EXPECT_EQ(result.exit_code, 2);
         EXPECT_THAT(result.err, HasSubstr(message));
     }
-}
-
-TEST_F(Messages, VerifyTellsTheSpeedOfAFilm) {
-    ASSERT_EQ(run_corda({"render", scene_, "-o", video_, "--set", "video.speed=0.5"}).exit_code, 0);
-    const auto slow = run_corda({"verify", video_});
-    EXPECT_EQ(slow.exit_code, 0) << slow.err;
-    EXPECT_THAT(slow.out, HasSubstr(" per second, 2 s, at speed 1/2\n"));
-    EXPECT_EQ(nlohmann::json::parse(run_corda({"verify", video_, "--json"}).out)["speed"], "1/2");
-    ASSERT_EQ(run_corda({"render", scene_, "-o", video_, "--force"}).exit_code, 0);
-    EXPECT_THAT(run_corda({"verify", video_}).out, Not(HasSubstr("speed")));
 }
 
 TEST_F(Messages, PlanNamesCopiesAndLabelsEach) {

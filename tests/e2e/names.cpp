@@ -40,9 +40,6 @@ TEST_F(Names, AreBytesAsFilesAndEscapedElsewhere) {
     ASSERT_EQ(rendered.exit_code, 0) << rendered.err;
     EXPECT_THAT(rendered.err, HasSubstr("corda: caf\\xe9\\x1b[31m: "));
     EXPECT_EQ(json::parse(rendered.out)["output"], folder_.file("caf\\xe9.mp4"));
-    const auto verified = run_corda({"verify", video, "--json"});
-    EXPECT_EQ(verified.exit_code, 0) << verified.out;
-    EXPECT_EQ(json::parse(verified.out)["file"], folder_.file("caf\\xe9.mp4"));
     const auto title =
         run_shell("ffprobe -v error -show_entries format_tags=title -of csv=p=0 " + test::quoted(video));
     EXPECT_EQ(title.out, "caf\\xe9\\x1b[31m\n");
@@ -96,8 +93,7 @@ TEST_F(Names, NeverReachTheTerminalRaw) {
         {"study", scene, "-o", folder_.path()},
         {"study", "-o", folder_.file("report"), "--chapter", nasty},
         {"compare", nasty, nasty, "--max", nasty},
-        {"compare", nasty, nasty},
-        {"verify", nasty}};
+        {"compare", nasty, nasty}};
     for (std::vector<std::string> command : commands) {
         const auto result = run_corda(command);
         EXPECT_NE(result.exit_code, 0);

@@ -353,7 +353,7 @@ TEST_F(Output, EndsQuietlyIfItsReaderLeaves) {
         EXPECT_THAT(result.err, Not(HasSubstr("pipe"))) << arguments;
     }
     const auto missing = test::run_shell("{ sleep 0.2; exec " + test::quoted(CORDA_PROGRAM) +
-                                         " verify /dev/null --json; }" + left);
+                                         " plan /dev/null/a --json; }" + left);
     EXPECT_EQ(missing.out, "6\n");  // a failure is not hidden
 }
 

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/command.hpp"
+#include "support/probe.hpp"
 
 namespace corda {
 namespace {
@@ -98,7 +99,7 @@ TEST_F(Resume, MakesTheSameVideoAfterAKillAtAnyMoment) {
             std::filesystem::copy(file("a.mp4.parts"), file("copy.mp4.parts"));
             EXPECT_EQ(run_corda({"recover", file("copy.mp4.parts"), "-o", file("copy.mp4")}).exit_code, 0)
                 << after_s;
-            EXPECT_EQ(run_corda({"verify", file("copy.mp4")}).exit_code, 0) << after_s;
+            EXPECT_NO_THROW((void)test::probe(file("copy.mp4"))) << after_s;
         }
         if (!is_finished) {
             std::vector<std::string> again = slowly;

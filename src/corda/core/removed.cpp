@@ -9,6 +9,7 @@ namespace {
 // Sorted by kind: commands, options, keys.
 constexpr std::array kRemoved{
     Removed{"recover", "render a long film as pictures (-o frames/%06d.png), which --resume continues"},
+    Removed{"verify", "render checks each video before it gets its name; ffprobe tells about any video"},
     Removed{"--panels", "use several ropes in one scene, or join videos by ffmpeg's filter xstack"},
     Removed{"--flip", "use --max, --mean or --share"},
     Removed{"--ssim", "use --max, --mean or --share"},

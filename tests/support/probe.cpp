@@ -1,0 +1,28 @@
+#include "support/probe.hpp"
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "support/command.hpp"
+
+namespace corda::test {
+
+VideoFacts probe(const std::string& path) {
+    const CommandResult result =
+        run_shell("ffprobe -v error -count_frames -of json -show_streams -show_format " + quoted(path));
+    if (result.exit_code != 0 || !result.err.empty()) throw std::runtime_error(path + ": " + result.err);
+    const auto json = nlohmann::json::parse(result.out);
+    const auto& stream = json.at("streams").at(0);
+    const auto text = [&stream](const char* key) { return stream.value(key, std::string("none")); };
+    return {.frames = std::stoi(text("nb_read_frames")),
+            .width_px = stream.at("width"),
+            .height_px = stream.at("height"),
+            .codec = text("codec_name"),
+            .pixel_format = text("pix_fmt"),
+            .rate = text("avg_frame_rate"),
+            .colors = text("color_range") + " " + text("color_space") + " " + text("color_primaries") + " " +
+                      text("color_transfer"),
+            .duration_s = std::stod(json.at("format").value("duration", "0"))};
+}
+
+}  // namespace corda::test
