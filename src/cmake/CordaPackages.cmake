@@ -36,19 +36,16 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME corda)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-# Loaded at run time, so that dpkg-shlibdeps does not see them: OpenGL on the CPU, and the libav of the headers. Debian
-# names a library's package after its major version.
-set(loaded "libegl1, libegl-mesa0, libopengl0, libgl1-mesa-dri, libavcodec${LIBAVCODEC_MAJOR}, \
-libavformat${LIBAVFORMAT_MAJOR}")
+# Loaded at run time, so that dpkg-shlibdeps does not see them: OpenGL on the CPU.
+set(loaded "libegl1, libegl-mesa0, libopengl0, libgl1-mesa-dri")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${loaded}")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libmicrohttpd12 | libmicrohttpd12t64")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "The program: it simulates ropes and nets of particles and bars, draws each frame \
 with OpenGL on a machine without a screen, the same bytes on every run, and encodes video.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libcorda-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # The dependencies of a program that links the static library.
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${loaded}, libavutil-dev, libx264-dev, libcairo2-dev, libegl-dev, \
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${loaded}, libavcodec-dev, libavformat-dev, libavutil-dev, libx264-dev, libcairo2-dev, libegl-dev, \
 libeigen3-dev, libepoxy-dev, libfmt-dev, libfontconfig-dev, libfreetype-dev, libpng-dev, \
 libtomlplusplus-dev, nlohmann-json3-dev, pkg-config, zlib1g-dev")
 # For golden tests: corda_add_golden_tests, and the matcher of corda/testing.hpp.

@@ -116,20 +116,6 @@ TEST_F(Resume, MakesTheSameVideoAfterAKillAtAnyMoment) {
     RecordProperty("folders", folders);
 }
 
-TEST_F(Resume, AChunkThatCrashesItsReaderIsDamaged) {
-    interrupt("a.mp4", "KILL", 0.0, From::kFirstChunk, {"--preset", "medium", "--duration", "15"});
-    ASSERT_NE(first_chunk("a.mp4"), "");
-    const std::string crashes = "LD_PRELOAD=" HIDDEN_LIBRARIES " CORDA_TEST_HIDES=" LIBAVFORMAT
-                                " LD_LIBRARY_PATH=" CRASHING_DEMUXER_FOLDER;
-    const auto resume = render("a.mp4", {"--preset", "medium", "--duration", "15", "--resume"});
-    for (const auto& command : {std::vector<std::string>{"recover", file("a.mp4.parts")}, resume}) {
-        const auto result = run_corda(command, crashes);
-        EXPECT_EQ(result.exit_code, 7) << result.err;
-        EXPECT_THAT(result.err, HasSubstr("a.mp4.parts' is damaged: reading it crashed (Aborted)"));
-        EXPECT_NE(first_chunk("a.mp4"), "");
-    }
-}
-
 TEST_F(Resume, MakesTheSameVideoInEveryFormat) {
     using Words = std::vector<std::string>;
     for (const auto& [name, more] : std::vector<std::pair<std::string, Words>>{

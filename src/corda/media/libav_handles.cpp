@@ -1,6 +1,5 @@
 #include "corda/media/libav_handles.hpp"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <array>
@@ -9,34 +8,10 @@
 #include <mutex>
 
 #include "corda/core/file.hpp"
-#include "corda/core/machine.hpp"
 #include "corda/core/text.hpp"
-#include "corda/media/format/format.hpp"
 
 namespace corda::media {
 namespace {
-
-// The one of the headers' version. It brings the libavcodec that it was built with.
-constexpr const char* kLibrary = "libavformat.so." AV_STRINGIFY(LIBAVFORMAT_VERSION_MAJOR);
-
-/// Loads libavformat until the process ends.
-void* open_library() {
-    // Measured as 181 and 31 MiB on Debian 12, 167 and 43 on Debian 13.
-    constexpr std::uint64_t kAddressBytes = std::uint64_t{190} << 20U;
-    constexpr std::uint64_t kDataBytes = std::uint64_t{46} << 20U;
-    require_address_space(kAddressBytes, std::string("loading ") + kLibrary, kDataBytes);
-    void* const library = dlopen(kLibrary, RTLD_LAZY | RTLD_LOCAL);
-    if (library != nullptr) return library;
-    throw_error(
-        ExitCode::kEncoder,
-        "the video libraries cannot be loaded: {}; install them (Debian: apt-get install {} libavformat{})",
-        dlerror(), libavcodec_package(), LIBAVFORMAT_VERSION_MAJOR);
-}
-
-void* library() {
-    static void* const handle = open_library();
-    return handle;
-}
 
 constexpr std::size_t kMaxLog = 400;  // characters; a broken stream can complain once per macroblock
 
@@ -56,18 +31,6 @@ void on_log(void* object, int level, const char* format, va_list arguments) {
 }
 
 }  // namespace
-
-void load_libav() {
-    static_cast<void>(library());
-}
-
-void* find_libav_function(const char* name) {
-    if (void* const function = dlsym(library(), name)) return function;
-    throw_error(ExitCode::kEncoder,
-                "the video libraries are not those that Corda was built for: {}; install the packages of one "
-                "Debian release",
-                dlerror());
-}
 
 Options& Options::set(const char* name, const std::string& value) {
     check_libav(av_dict_set(&dictionary_, name, value.c_str(), 0), ExitCode::kInternal,

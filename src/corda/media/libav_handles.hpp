@@ -23,69 +23,11 @@ extern "C" {
 #include <string_view>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/loaded_function.hpp"
 #include "corda/core/rational.hpp"
 
 namespace corda::media {
 
-/// Loads libavformat and libavcodec unless this process has done so. That takes 25 ms and some 115 libraries,
-/// so it happens on first use. Call this before a fork, so that not every child loads them. Throws
-/// corda::Error: kEncoder if they are missing, kTemporary if memory is short.
-void load_libav();
-
-/// Address of a function of libavformat or libavcodec, which are loaded first. Throws what load_libav()
-/// throws, and kEncoder if there is no such function.
-[[nodiscard]] void* find_libav_function(const char* name);
-
-// Within this namespace these names stand for libav's own, which the program is not linked with.
-#define CORDA_LIBAV(name) \
-    inline constinit const decltype(loaded_function<&find_libav_function>(&::name)) name(#name)
-CORDA_LIBAV(av_find_best_stream);
-CORDA_LIBAV(av_find_input_format);
-CORDA_LIBAV(av_guess_format);
-CORDA_LIBAV(av_new_packet);
-CORDA_LIBAV(av_packet_alloc);
-CORDA_LIBAV(av_packet_free);
-CORDA_LIBAV(av_packet_get_side_data);
-CORDA_LIBAV(av_packet_move_ref);
-CORDA_LIBAV(av_packet_rescale_ts);
-CORDA_LIBAV(av_packet_unref);
-CORDA_LIBAV(av_probe_input_format3);
-CORDA_LIBAV(av_read_frame);
-CORDA_LIBAV(av_write_frame);
-CORDA_LIBAV(av_write_trailer);
-CORDA_LIBAV(avcodec_alloc_context3);
-CORDA_LIBAV(avcodec_default_get_buffer2);
-CORDA_LIBAV(avcodec_find_decoder_by_name);
-CORDA_LIBAV(avcodec_find_encoder_by_name);
-CORDA_LIBAV(avcodec_flush_buffers);
-CORDA_LIBAV(avcodec_free_context);
-CORDA_LIBAV(avcodec_get_name);
-CORDA_LIBAV(avcodec_open2);
-CORDA_LIBAV(avcodec_parameters_alloc);
-CORDA_LIBAV(avcodec_parameters_copy);
-CORDA_LIBAV(avcodec_parameters_free);
-CORDA_LIBAV(avcodec_parameters_from_context);
-CORDA_LIBAV(avcodec_parameters_to_context);
-CORDA_LIBAV(avcodec_profile_name);
-CORDA_LIBAV(avcodec_receive_frame);
-CORDA_LIBAV(avcodec_receive_packet);
-CORDA_LIBAV(avcodec_send_frame);
-CORDA_LIBAV(avcodec_send_packet);
-CORDA_LIBAV(avcodec_version);
-CORDA_LIBAV(avformat_alloc_output_context2);
-CORDA_LIBAV(avformat_close_input);
-CORDA_LIBAV(avformat_free_context);
-CORDA_LIBAV(avformat_new_stream);
-CORDA_LIBAV(avformat_open_input);
-CORDA_LIBAV(avformat_version);
-CORDA_LIBAV(avformat_write_header);
-CORDA_LIBAV(avio_alloc_context);
-CORDA_LIBAV(avio_context_free);
-CORDA_LIBAV(avio_flush);
-#undef CORDA_LIBAV
-
-/// Deleter for libav's `void free(T**)`; `kFree` points to it or to its LoadedFunction.
+/// Deleter for libav's `void free(T**)`.
 template <auto kFree>
 struct PointerPointerDeleter {
     template <typename T>

@@ -1,7 +1,6 @@
 #include "corda/serve/server.hpp"
 
 #include <arpa/inet.h>
-#include <dlfcn.h>
 #include <fmt/format.h>
 #include <microhttpd.h>
 #include <netinet/in.h>
@@ -16,35 +15,12 @@
 #include <system_error>
 #include <utility>
 
-#include "corda/core/loaded_function.hpp"
 #include "corda/core/text.hpp"
 
 namespace corda::serve {
 namespace {
 
 constexpr std::size_t kMaxBodyBytes = std::size_t{1} << 20;
-
-/// Loads libmicrohttpd on first use: with the nine libraries that it brings, it would take 3.6 ms of each
-/// start of the program.
-void* find_httpd_function(const char* name) {
-    void* const library = dlopen("libmicrohttpd.so.12", RTLD_NOW | RTLD_LOCAL);  // it stays loaded
-    void* const function = library == nullptr ? nullptr : dlsym(library, name);
-    if (function != nullptr) return function;
-    throw_error(ExitCode::kTemporary,
-                "the web server cannot be loaded: {}; install it (Debian: apt-get install libmicrohttpd12)",
-                dlerror());
-}
-
-// Within this namespace these names stand for those of libmicrohttpd, which the program is not linked with.
-#define CORDA_HTTPD(name) constinit const decltype(loaded_function<&find_httpd_function>(&::name)) name(#name)
-CORDA_HTTPD(MHD_add_response_header);
-CORDA_HTTPD(MHD_create_response_from_buffer);
-CORDA_HTTPD(MHD_destroy_response);
-CORDA_HTTPD(MHD_get_connection_values);
-CORDA_HTTPD(MHD_lookup_connection_value);
-CORDA_HTTPD(MHD_queue_response);
-CORDA_HTTPD(MHD_stop_daemon);
-#undef CORDA_HTTPD
 
 std::string random_token() {
     std::array<unsigned char, 16> bytes{};
@@ -222,10 +198,8 @@ Server::Server(const ServerDef& def, Handler handler) : impl_(std::make_unique<I
     place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     constexpr unsigned kMaxConnections = 64;
     constexpr unsigned kSilentSeconds = 60;
-    const auto start_daemon =
-        reinterpret_cast<decltype(&::MHD_start_daemon)>(find_httpd_function("MHD_start_daemon"));
     errno = 0;
-    impl_->daemon = start_daemon(
+    impl_->daemon = MHD_start_daemon(
         MHD_USE_THREAD_PER_CONNECTION | MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_AUTO, def.port, nullptr,
         nullptr, &Impl::on_request, impl_.get(), MHD_OPTION_SOCK_ADDR, reinterpret_cast<sockaddr*>(&place),
         MHD_OPTION_CONNECTION_LIMIT, kMaxConnections, MHD_OPTION_CONNECTION_TIMEOUT, kSilentSeconds,
@@ -233,9 +207,7 @@ Server::Server(const ServerDef& def, Handler handler) : impl_(std::make_unique<I
     if (impl_->daemon == nullptr)
         throw_error(ExitCode::kIo, "cannot serve at 127.0.0.1:{}: {}; give another --port, or none", def.port,
                     std::generic_category().message(errno));
-    const auto get_daemon_info =
-        reinterpret_cast<decltype(&::MHD_get_daemon_info)>(find_httpd_function("MHD_get_daemon_info"));
-    const MHD_DaemonInfo* const info = get_daemon_info(impl_->daemon, MHD_DAEMON_INFO_BIND_PORT);
+    const MHD_DaemonInfo* const info = MHD_get_daemon_info(impl_->daemon, MHD_DAEMON_INFO_BIND_PORT);
     impl_->address =
         fmt::format("http://127.0.0.1:{}/{}/", info == nullptr ? def.port : info->port, impl_->token);
 }

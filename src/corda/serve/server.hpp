@@ -48,7 +48,7 @@ class Server : NonCopyable {
     /// Answers one request on a thread of its own, within half a minute.
     using Handler = std::function<Response(const Request&)>;
 
-    /// Throws corda::Error: kIo if the port cannot be used, kTemporary if libmicrohttpd cannot be loaded.
+    /// Throws corda::Error (kIo) if the port cannot be used.
     Server(const ServerDef& def, Handler handler);
     /// Waits for the requests that are being answered.
     ~Server();

@@ -308,7 +308,6 @@ const Ending& find_ending(std::string_view path) {
 }
 
 Format find_format(std::string_view path, const VideoDef& def, bool is_transparent) {
-    load_libav();
     Format format;
     format.ending = &find_ending(path);
     format.codec = &choose_codec(*format.ending, path, def.encoder, format.is_fallback);

@@ -161,7 +161,7 @@ struct Format {
 
 /// The format of a file of this name. Throws corda::Error: kUsage, naming the field, the value and the
 /// allowed ones, if the ending, the codec, the pixels, the preset, the crf, the size and the rate do not go
-/// together; kEncoder if libavcodec has no codec for it; and what load_libav() throws.
+/// together; kEncoder if libavcodec has no codec for it.
 [[nodiscard]] Format find_format(std::string_view path, const VideoDef& def, bool is_transparent = false);
 
 /// Checks the fields that mean the same for every format. Throws corda::Error (kUsage), naming the field, the

@@ -149,7 +149,6 @@ std::string read_comment(const std::string& path, std::string_view remedy) {
 }  // namespace
 
 std::string comment_in_child(const std::string& path, std::string_view remedy) {
-    load_libav();
     const QuietLog quiet;
     const auto end = run_in_child([&] { return read_comment(path, remedy); }, kCommentLimits);
     if (end && !end->finished()) fail_reading(path, ExitCode::kIo, "it " + end->text, remedy);

@@ -98,7 +98,6 @@ std::string report_bytes(const std::string& path, bool has_little, std::optional
 }  // namespace
 
 VerifyReport verify_in_child(const std::string& path, std::optional<Rational> fps) {
-    load_libav();
     const bool has_little = has_little_memory();
     std::error_code none;  // if it is no regular file
     const std::uintmax_t bytes = std::filesystem::file_size(path, none);
@@ -115,7 +114,6 @@ VerifyReport verify_in_child(const std::string& path, std::optional<Rational> fp
 }
 
 void work_in_child(const std::string& path, std::uint64_t bytes, const std::function<void()>& work) {
-    load_libav();
     if (has_other_threads()) return work();  // see run_in_child
     const QuietLog quiet;
     const auto answering = [&work]() -> std::string {
