@@ -284,7 +284,6 @@ CheckedVideo check_video_output(CheckedVideo video, const std::string& input, bo
     video.format = find_format(video.path, video.def, is_transparent);
     if (video.format.codec->is_hardware) static_cast<void>(make_encoder(video.format, video.def));
     const std::int64_t known_end = video.end == CheckedVideo::kNoEnd ? video.first : video.end;
-    check_animation_frames(*video.format.ending, known_end - video.first);
     const FileKind kind = video.format.ending->kind;
     if (kind == FileKind::kVideo || kind == FileKind::kAnimation) {
         check_output(video.path, input, video.force);
