@@ -4,6 +4,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/core/text.hpp"
 #include "corda/figures/sweep_figures.hpp"
 #include "corda/sweep/sweep.hpp"
