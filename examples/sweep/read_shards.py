@@ -26,4 +26,4 @@ def samples(folder):
 
 if __name__ == "__main__":
     for info, arrays in samples(sys.argv[1]):
-        print(info["key"], info["split"], info["error_bound_px"], arrays["positions"].shape, arrays["mask"].shape)
+        print(info["key"], info["split"], info["error_estimate_px"], arrays["positions"].shape, arrays["mask"].shape)

@@ -1,4 +1,4 @@
-// Method auto on bodies that are no chains: closed ropes and nets. The truth to hold its claims against is
+// Method auto on bodies that are no chains: closed ropes and nets. The truth to hold its estimates against is
 // the highest order of `rattle` at a far smaller step than any that it tries.
 
 #include <gtest/gtest.h>
@@ -37,29 +37,30 @@ double largest_error_m(const System& system, const MethodDef& solver, const Meth
 }
 
 template <class Def>
-void expect_true_bound(const System& system, double tolerance_m, int frames) {
+void expect_true_estimate(const System& system, double tolerance_m, int frames) {
     const BodyPlan plan = test::plan_of(system, WorldDef{}, tolerance_m, kGraphFrames, frames);
     ASSERT_TRUE(std::holds_alternative<Def>(plan.method));
     ASSERT_FALSE(plan.horizon_s.has_value());
-    ASSERT_TRUE(plan.error_bound_m.has_value());
-    EXPECT_LE(*plan.error_bound_m, tolerance_m);
+    ASSERT_TRUE(plan.error_estimate_m.has_value());
+    EXPECT_LE(*plan.error_estimate_m, tolerance_m);
     const double step_s = sim::fixed_step_s(plan.method).value_or(1.0 / 250.0) / 8.0;
     const double error_m = largest_error_m(system, plan.method, fine_rattle(step_s), frames);
-    // Measured: 0.33 of the bound, three times the difference that was seen.
-    EXPECT_LE(error_m, *plan.error_bound_m);
+    // Measured: 0.33 of the estimate, three times the difference that was seen.
+    EXPECT_LE(error_m, *plan.error_estimate_m);
     EXPECT_GT(error_m, 0.0);
 }
 
-TEST(AutoGraph, BoundIsTrueForAClosedRope) {
+TEST(AutoGraph, EstimateIsTrueForAClosedRope) {
     const RopeDef rope = test::ring(12);
     const System system = build_system({&rope, 1});
-    for (const double tolerance_m : {1e-2, 1e-4, 1e-7}) expect_true_bound<RattleDef>(system, tolerance_m, 60);
+    for (const double tolerance_m : {1e-2, 1e-4, 1e-7})
+        expect_true_estimate<RattleDef>(system, tolerance_m, 60);
 }
 
-TEST(AutoGraph, BoundIsTrueForANet) {
+TEST(AutoGraph, EstimateIsTrueForANet) {
     const NetDef net = test::leaning_net(6, 5, 0.2);
     const System system = build_system({}, {&net, 1});
-    for (const double tolerance_m : {1e-2, 1e-5}) expect_true_bound<ExactDef>(system, tolerance_m, 60);
+    for (const double tolerance_m : {1e-2, 1e-5}) expect_true_estimate<ExactDef>(system, tolerance_m, 60);
 }
 
 TEST(ClosedRope, KeepsItsLengthsItsEnergyAndItsMirrorImage) {

@@ -1,5 +1,5 @@
-// Method auto: what it claims against numbers worked out by others (R5 and R11). A claim
-// that proves false is a failed test.
+// Method auto: its estimates against numbers worked out by others (R5 and R11). A false
+// estimate is a failed test.
 
 #include <gtest/gtest.h>
 
@@ -21,32 +21,32 @@ BodyPlan plan_of(const RopeDef& rope, double tolerance_m, std::int64_t last_fram
     return test::plan_of(build_system({&rope, 1}), WorldDef{}, tolerance_m, kFrames, last_frame);
 }
 
-class AutoBound : public testing::TestWithParam<std::tuple<std::size_t, double>> {};
+class AutoEstimate : public testing::TestWithParam<std::tuple<std::size_t, double>> {};
 
-TEST_P(AutoBound, IsTrueUnderTheHorizon) {
+TEST_P(AutoEstimate, IsTrueUnderTheHorizon) {
     const auto [row, tolerance] = GetParam();
     const reference::ReleasedChain& chain = reference::kReleasedChains[row];
     const RopeDef rope = reference::released_rope(chain);
     const System system = build_system({&rope, 1});
     const double tolerance_m = tolerance * chain.length_m;
     const BodyPlan plan = plan_of(rope, tolerance_m, kFrames.last_frame_within(chain.time_s));
-    EXPECT_LE(plan.error_bound_m.value(), tolerance_m);
-    if (plan.horizon_s) return;  // nothing is claimed at the row's time
+    EXPECT_LE(plan.error_estimate_m.value(), tolerance_m);
+    if (plan.horizon_s) return;  // nothing is estimated at the row's time
     Simulation run(system, WorldDef{}, plan.method, kFrames.interval_s());
     ASSERT_EQ(run.advance_to(chain.time_s), Status::kOk);
     const double error_m =
         std::hypot(run.state().x_m.back() - chain.tip_m.x, run.state().y_m.back() - chain.tip_m.y);
-    // Measured: the error is 0.01 .. 0.4 of the bound.
-    EXPECT_LE(error_m, plan.error_bound_m.value() + 1e-13 * chain.length_m);
+    // Measured: the error is 0.01 .. 0.4 of the estimate.
+    EXPECT_LE(error_m, plan.error_estimate_m.value() + 1e-13 * chain.length_m);
 }
 
-INSTANTIATE_TEST_SUITE_P(R5, AutoBound,
+INSTANTIATE_TEST_SUITE_P(R5, AutoEstimate,
                          testing::Combine(testing::Range<std::size_t>(0, 15),
                                           testing::Values(1e-3, 1e-4, 1e-6, 1e-9)));
 
 /// Runs of so few steps that these follow from nothing but the first one and its growth: a check that took
 /// the same steps would see rounding alone.
-TEST(AutoPlan, BoundIsTrueOfAFewSteps) {
+TEST(AutoPlan, EstimateIsTrueOfAFewSteps) {
     RopeDef spring = reference::straight_rope(1, 84.0, 45.0);
     spring.material.compliance_1_n = 0.005;
     RopeDef beam = reference::straight_rope(3, 1.873, 0.0);
@@ -74,10 +74,10 @@ TEST(AutoPlan, BoundIsTrueOfAFewSteps) {
                                                            run.state().y_m[i] - truth.state().y_m[i]));
                     }
                 }
-                // Measured: a third of the bound, or less than its rounding.
-                EXPECT_LE(largest_m, plan.error_bound_m.value() + 1e-14 * reference::length_m(rope))
+                // Measured: a third of the estimate, or less than its rounding.
+                EXPECT_LE(largest_m, plan.error_estimate_m.value() + 1e-14 * reference::length_m(rope))
                     << std::get<ExactDef>(plan.method).tolerance << " " << last_frame;
-                std::printf("few steps: %.1e of %.1e m\n", largest_m, *plan.error_bound_m);
+                std::printf("few steps: %.1e of %.1e m\n", largest_m, *plan.error_estimate_m);
             }
         }
     }
@@ -85,7 +85,7 @@ TEST(AutoPlan, BoundIsTrueOfAFewSteps) {
 
 /// A beam of 1 cm whose vibrations are too quick for the tolerance, so that they limit the steps and are
 /// damped by a run and its check alike, and a stretching string whose force has a kink.
-TEST(AutoPlan, BoundIsTrueOfStiffBodies) {
+TEST(AutoPlan, EstimateIsTrueOfStiffBodies) {
     const FrameRate five(Rational{5, 1});
     RopeDef beam = reference::straight_rope(3, 0.01, 10.0);
     beam.bending_n_m2 = 0.88;
@@ -110,8 +110,8 @@ TEST(AutoPlan, BoundIsTrueOfStiffBodies) {
                                                            run.state().y_m[i] - truth.state().y_m[i]));
             }
         }
-        std::printf("stiff: %.1e of %.1e m\n", largest_m, *plan.error_bound_m);
-        EXPECT_LE(largest_m, *plan.error_bound_m);
+        std::printf("stiff: %.1e of %.1e m\n", largest_m, *plan.error_estimate_m);
+        EXPECT_LE(largest_m, *plan.error_estimate_m);
     }
 }
 
@@ -134,7 +134,7 @@ TEST(AutoPlan, SaysWhereAChaoticMotionCanNoLongerBePredicted) {
     EXPECT_LT(*plan.horizon_s, 5.0);  // R5: a perturbation grows by 1e15 in 5 s
 }
 
-TEST(AutoBound, IsTrueForTheSourceReportsStart) {
+TEST(AutoEstimate, IsTrueForTheSourceReportsStart) {
     // R11: all 40 particles at 1, 2, 5 and 10 s.
     const RopeDef rope = reference::report_rope(40);
     const System system = build_system({&rope, 1});
@@ -147,7 +147,7 @@ TEST(AutoBound, IsTrueForTheSourceReportsStart) {
         for (std::size_t i = 0; i < frame.points_m.size(); ++i) {
             const double error_m = std::hypot(run.state().x_m[i] - frame.points_m[i].x,
                                               run.state().y_m[i] - frame.points_m[i].y);
-            EXPECT_LE(error_m, plan.error_bound_m.value())
+            EXPECT_LE(error_m, plan.error_estimate_m.value())
                 << "particle " << i << " at " << frame.time_s << " s";
         }
     }

@@ -1,6 +1,6 @@
 // Implicit steps of `exact` (section 12 of src/corda/sim/exact/README.md), which `auto` takes for long ropes:
-// their order, published numbers, and claims of `auto` about random ropes against the Taylor series at 1e-12.
-// CORDA_BOUND_SCENES=1000 sets the number of ropes.
+// their order, published numbers, and estimates of `auto` of random ropes against the Taylor series at 1e-12.
+// CORDA_ESTIMATE_SCENES=1000 sets the number of ropes.
 
 #include <gtest/gtest.h>
 
@@ -264,9 +264,9 @@ LongRope long_rope(unsigned number) {
     return made;
 }
 
-TEST(LongRopes, BoundsAreTrueOfRandomOnes) {
+TEST(LongRopes, EstimatesAreTrueOfRandomOnes) {
     constexpr int kLastFrame = 60;
-    const char* const wanted = std::getenv("CORDA_BOUND_SCENES");
+    const char* const wanted = std::getenv("CORDA_ESTIMATE_SCENES");
     const int count = wanted == nullptr ? 2 : std::atoi(wanted);
     std::vector<double> ratios;
     int horizons = 0;
@@ -275,7 +275,7 @@ TEST(LongRopes, BoundsAreTrueOfRandomOnes) {
         const LongRope given = long_rope(static_cast<unsigned>(n));
         const System system = system_of(given.rope);
         const BodyPlan plan = test::plan_of(system, given.world, given.tolerance_m, kFrames, kLastFrame);
-        ASSERT_TRUE(plan.error_bound_m) << n;
+        ASSERT_TRUE(plan.error_estimate_m) << n;
         if (plan.horizon_s) ++horizons;
         if (!std::get<ExactDef>(plan.method).implicit) {
             ++explicit_ones;
@@ -284,13 +284,13 @@ TEST(LongRopes, BoundsAreTrueOfRandomOnes) {
         Simulation run(system, given.world, plan.method);
         Simulation truth(system, given.world, ExactDef{1e-10});
         const double last_s = plan.horizon_s.value_or(kFrames.time_s(kLastFrame));
-        ratios.push_back(largest_error_m(run, truth, last_s) / *plan.error_bound_m);
-        EXPECT_LE(ratios.back(), 1.0) << "rope " << n << ", bound " << *plan.error_bound_m;
+        ratios.push_back(largest_error_m(run, truth, last_s) / *plan.error_estimate_m);
+        EXPECT_LE(ratios.back(), 1.0) << "rope " << n << ", estimate " << *plan.error_estimate_m;
     }
     std::sort(ratios.begin(), ratios.end());
     ASSERT_FALSE(ratios.empty());
-    std::printf("%d ropes, %d explicit, %d horizons, error / bound at most %.3g, in the median %.3g\n", count,
-                explicit_ones, horizons, ratios.back(), ratios[ratios.size() / 2]);
+    std::printf("%d ropes, %d explicit, %d horizons, error / estimate at most %.3g, in the median %.3g\n",
+                count, explicit_ones, horizons, ratios.back(), ratios[ratios.size() / 2]);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The cases of section 4 of src/corda/sim/README.md: every method stays within its bound, and the bounds that
-// auto claims are true. The cases, the bounds and the measured errors are in src/corda/study/accuracy_*.cpp.
+// The cases of section 4 of src/corda/sim/README.md: every method stays within its bound, and the estimates
+// of auto are true. The cases, the bounds and the measured errors are in src/corda/study/accuracy_*.cpp.
 
 #include <gtest/gtest.h>
 

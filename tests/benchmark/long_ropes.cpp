@@ -1,5 +1,5 @@
 // Ropes of 10 to 100 000 links that swing from 30 degrees, at 60 frames per second and 0.1 px of a picture of
-// 1080 rows: method `auto`. Processor time per frame of the run, planning over running, the bound and the
+// 1080 rows: method `auto`. Processor time per frame of the run, planning over running, the estimate and the
 // error against `exact` at 1e-12, in pixels, and the memory of the process so far. Arguments: links, frames,
 // and frames that the error is measured over; 0 where the truth would take minutes.
 
@@ -60,7 +60,7 @@ void swing_of_long_rope(benchmark::State& bench) {
     bench.SetLabel(method_text(plan.method));
     bench.counters["frame_ms"] = 1e3 * run_s / static_cast<double>(bench.iterations()) / frames;
     bench.counters["plan/run"] = plan_s / run_s;
-    bench.counters["bound_px"] = plan.error_bound_m.value_or(NAN) / kPixelM;
+    bench.counters["estimate_px"] = plan.error_estimate_m.value_or(NAN) / kPixelM;
     const auto compared = static_cast<int>(bench.range(2));
     bench.counters["error_px"] = compared > 0 ? error_m(system, plan.method, compared) / kPixelM : NAN;
     bench.counters["MiB"] = static_cast<double>(usage.ru_maxrss) / 1024.0;

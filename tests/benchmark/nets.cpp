@@ -1,7 +1,7 @@
 // Cost of rigid nets without diagonals by method `auto`: a grid of 2 m is let go with its side level, pinned
 // at a corner, at 60 frames per second and 0.1 px of 1080 in 4.4 m. CPU time per frame of the plan (the run
 // and its checks) and of the run alone; the largest error of the last frame, against a run at a hundredth of
-// the tightest tolerance of a plan; its bound; the memory of the process.
+// the tightest tolerance of a plan; its estimate; the memory of the process.
 
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
@@ -65,7 +65,7 @@ void plan_net(benchmark::State& bench) {
         bench.counters["plan_ms/frame"] = 1e3 * (planned_s - start_s) / frames;
         bench.counters["run_ms/frame"] = 1e3 * (ran_s - planned_s) / frames;
         bench.counters["error_m"] = error_m;
-        bench.counters["bound_m"] = plan.error_bound_m.value_or(NAN);
+        bench.counters["estimate_m"] = plan.error_estimate_m.value_or(NAN);
         bench.counters["horizon_s"] = plan.horizon_s.value_or(HUGE_VAL);
         bench.SetLabel(method_text(plan.method));
     }

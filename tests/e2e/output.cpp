@@ -89,7 +89,7 @@ TEST_F(Output, SimulateJsonDescribesTheRun) {
     EXPECT_GT(figures["wall_s"], 0.0);
     EXPECT_GT(figures["max_strain"], 0.0);
     EXPECT_TRUE(figures["energy_error"].is_number());
-    for (const char* key : {"error_bound_m", "error_bound_px", "horizon_s"})
+    for (const char* key : {"error_estimate_m", "error_estimate_px", "horizon_s"})
         EXPECT_TRUE(figures.at(key).is_null()) << key;
 }
 
@@ -204,8 +204,8 @@ TEST_F(Output, AutoReportsItsBoundAndPlanSaysWhy) {
         "chaotic.toml", "schema = 1\n[[rope]]\nhang = { links = 10, length = 1.0, angle_deg = 90.0 }\n");
     const json calm = json::parse(run_corda({"simulate", chaotic, "--duration", "1", "--json"}).out);
     EXPECT_EQ(calm["method"], "exact");
-    EXPECT_GT(calm["error_bound_m"], 0.0);
-    EXPECT_LE(calm["error_bound_px"], 0.1);
+    EXPECT_GT(calm["error_estimate_m"], 0.0);
+    EXPECT_LE(calm["error_estimate_px"], 0.1);
     EXPECT_TRUE(calm["horizon_s"].is_null());
     const auto result = run_corda({"plan", chaotic, "--json"});
     EXPECT_EQ(result.exit_code, 0);

@@ -70,7 +70,7 @@ def test_a_film_tells_what_it_is(film):
     assert film.fps == 60
     assert repr(film) == "<corda.Film of 60 frames, 320x180 at 60 per second>"
     assert film.plan["methods"] == ["exact"]
-    assert 0 < film.plan["error_bound_px"] < 0.1
+    assert 0 < film.plan["error_estimate_px"] < 0.1
     assert film.plan["horizon_s"] is None
     assert film.camera["height"] > 0
     assert corda.__version__ in subprocess.run([PROGRAM, "--version"], capture_output=True, text=True).stdout

@@ -89,7 +89,7 @@ def test_a_sample_is_the_film_of_its_parameters(tmp_path):
         assert np.array_equal(sample["pixels"], film.to_pixels(film.positions))
         assert np.array_equal(sample["mask"], [film.mask(k) for k in range(len(film))])
         assert np.array_equal(sample["frames"], [film.frame(k) for k in range(len(film))])
-        for name in ("error_bound_m", "error_bound_px", "horizon_s"):
+        for name in ("error_estimate_m", "error_estimate_px", "horizon_s"):
             assert sample[name] == film.plan[name]
         assert sample["method"] == film.plan["methods"][0]
         assert sample["camera"] == {"center": film.camera["center"], "height": film.camera["height"]}
@@ -306,7 +306,7 @@ class Chains:
         return np.cumsum(self.link * np.stack([np.sin(angle), -np.cos(angle)], axis=-1), axis=2)
 
 
-def test_the_error_bound_holds(tmp_path):
+def test_the_error_estimate_holds(tmp_path):
     path = write(tmp_path, ROPE.replace("0.5", "2.0").replace("30000/1001", "30"), """samples = 200
 seed = 11
 [vary]
@@ -328,15 +328,15 @@ labels = ["positions"]
         masses = np.repeat(mass[:, None], links, axis=1)
         masses[:, -1] += payload
         chains = Chains(np.radians(angle_deg), masses, gravity)
-        bound = np.array([sample["error_bound_m"] for sample in alike])
+        estimate = np.array([sample["error_estimate_m"] for sample in alike])
         steps = 2
         rough, truth = (chains.positions(alike[0]["times"], n) for n in (1, 2))
-        while np.abs(truth - rough).max() > 0.01 * bound.min():
+        while np.abs(truth - rough).max() > 0.01 * estimate.min():
             steps *= 2
             rough, truth = truth, chains.positions(alike[0]["times"], steps)
         made = np.stack([sample["positions"][:, 1:] for sample in alike], axis=1)
         error = np.linalg.norm(made - truth, axis=-1).max(axis=(0, 2))
-        assert (error / bound).max() < 1.0  # measured 0.3334, of 4.3e-7 m .. 4.9e-5 m
+        assert (error / estimate).max() < 1.0  # measured 0.3334, of 4.3e-7 m .. 4.9e-5 m
 
 
 @pytest.fixture(scope="module")

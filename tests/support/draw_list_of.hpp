@@ -121,7 +121,7 @@ inline view::DrawList draw_list_of(Film& film, double time_s) {
     const view::Caption caption{
         time_s,
         film.figures().energy_error,
-        method_caption(film.plan(), film.error_bound_px(), film.scene().overlay.language),
+        method_caption(film.plan(), film.error_estimate_px(), film.scene().overlay.language),
         {}};
     return draw_list_of(film.scene(), film.system(), film.camera_at(time_s), state, motion, caption, trails,
                         histogram, plotted_of(film), arrows);

@@ -164,14 +164,14 @@ struct GlOptions {
 /// if a signal asks for that. `console` must outlive it.
 [[nodiscard]] OnProgress show_progress(const Console& console, const std::string& what);
 
-/// Reports the methods that `auto` chose and their error bounds.
+/// Reports the methods that `auto` chose and their error estimates.
 void report_plan(const Console& console, Film& film);
 /// Warns of plots, and of names of curves, that have no room.
 void warn_of_room(const Console& console, Film& film);
 /// Warns if a method that the scene names took one of several ways. To be called when the motion is known.
 void warn_of_branch(const Console& console, const Film& film);
 
-/// The keys that every JSON result about a film has: method, sizes, error bound, camera, passes; null for
+/// The keys that every JSON result about a film has: method, sizes, error estimate, camera, passes; null for
 /// unknown values. Simulates the film if necessary.
 [[nodiscard]] nlohmann::json film_json(Film& film);
 

@@ -21,7 +21,7 @@ struct Cost {
     double time_s = 0.0;
 };
 
-/// Cost of one run: the steps of the verified trial, or the duration over the step; std::nullopt if only a
+/// Cost of one run: the steps of the trial that holds, or the duration over the step; std::nullopt if only a
 /// run can show it.
 std::optional<Cost> cost_of(const Film& film) {
     const double duration_s = film.scene().world.duration_s;
@@ -29,7 +29,7 @@ std::optional<Cost> cost_of(const Film& film) {
     for (std::size_t i = 0; i < film.plan().bodies.size(); ++i) {
         const BodyPlan& body = film.plan().bodies[i];
         double steps = 0.0;
-        if (body.error_bound_m)
+        if (body.error_estimate_m)
             steps = static_cast<double>(body.trials.back().steps);
         else if (const std::optional<double> step_s = sim::fixed_step_s(body.method))
             steps = duration_s / *step_s;
@@ -56,7 +56,7 @@ nlohmann::json to_json(const Film& film, std::size_t i) {
                            {"method", method_name(body.method)},
                            {"solver", sim::method_text(body.method)},
                            {"reason", reason_text(body)},
-                           {"error_bound_m", or_null(body.error_bound_m)},
+                           {"error_estimate_m", or_null(body.error_estimate_m)},
                            {"horizon_s", or_null(body.horizon_s)},
                            {"horizon_reason", or_null(horizon_reason(body))},
                            {"trials", nlohmann::json::array()}};
@@ -88,7 +88,7 @@ void report_in_words(const Console& console, Film& film, const std::vector<std::
     for (const std::string& term : terms) console.result("modelled: " + term);
     report_methods(console, film);
     const Plan& plan = film.plan();
-    if (const auto bound = bound_text(film)) console.result("expected error: at most " + *bound);
+    if (const auto estimate = error_estimate_text(film)) console.result("error estimate: " + *estimate);
     for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
         const auto reason = horizon_reason(plan.bodies[i]);
         if (!reason) continue;

@@ -26,12 +26,12 @@ OnProgress show_progress(const Console& console, const std::string& what) {
 
 namespace {
 
-/// Reports the bodies for which `auto` has no bound.
-void warn_of_unbounded(const Console& console, const Film& film) {
+/// Reports the bodies for which `auto` has no error estimate.
+void warn_of_no_estimate(const Console& console, const Film& film) {
     const Plan& plan = film.plan();
     for (const MethodGroup& group : groups_of(plan)) {
         const BodyPlan& body = plan.bodies[group.bodies.front()];
-        if (body.reason == PlanReason::kNamed || body.error_bound_m) continue;
+        if (body.reason == PlanReason::kNamed || body.error_estimate_m) continue;
         const std::string whose =
             plan.bodies.size() == 1 ? "" : bodies_text(film.system(), group.bodies) + ": ";
         console.warning(
@@ -75,11 +75,11 @@ void warn_of_horizon(const Console& console, const Film& film) {
 void report_plan(const Console& console, Film& film) {
     for (const std::string& note : film.plan().notes) console.warning(note);
     if (!std::holds_alternative<AutoDef>(film.scene().solver)) return;
-    if (const auto bound = bound_text(film)) {
-        console.info(fmt::format("auto: {}; displayed error at most {}, shown by tighter runs",
-                                 plan_text(film.system(), film.plan()), *bound));
+    if (const auto estimate = error_estimate_text(film)) {
+        console.info(fmt::format("auto: {}; error estimate {}, from tighter runs",
+                                 plan_text(film.system(), film.plan()), *estimate));
     }
-    warn_of_unbounded(console, film);
+    warn_of_no_estimate(console, film);
     warn_of_still_nets(console, film);
     warn_of_horizon(console, film);
 }
@@ -93,7 +93,7 @@ void warn_of_branch(const Console& console, const Film& film) {
     const std::optional<double> branched_s = film.diagnostics().branched_s;
     const bool is_named =
         std::any_of(film.plan().bodies.begin(), film.plan().bodies.end(), [](const auto& body) {
-            return body.reason == PlanReason::kNamed;  // a bound says it of the others
+            return body.reason == PlanReason::kNamed;  // the plan says it of the others
         });
     if (!branched_s || !is_named) return;
     console.warning(
@@ -128,8 +128,8 @@ nlohmann::json film_json(Film& film) {
                            {"particles", system.particle_count()},
                            {"bars", system.bars.size()},
                            {"links", system.link_count()},
-                           {"error_bound_m", or_null(plan.error_bound_m)},
-                           {"error_bound_px", or_null(film.error_bound_px())},
+                           {"error_estimate_m", or_null(plan.error_estimate_m)},
+                           {"error_estimate_px", or_null(film.error_estimate_px())},
                            {"horizon_s", or_null(plan.horizon_s)}};
     const CameraDef& camera = film.camera();
     json["camera"] = {{"center", {camera.center_m->x, camera.center_m->y}}, {"height", *camera.height_m}};

@@ -35,16 +35,16 @@ std::string method_text(Film& film) {
     const std::vector<MethodGroup> groups = groups_of(plan);
     if (groups.size() == 1) text += ", because " + reason_text(plan.bodies[groups.front().bodies.front()]);
     text += ". ";
-    if (const auto bound = bound_text(film)) {
+    if (const auto estimate = error_estimate_text(film)) {
         text += fmt::format(
-            "The error of the displayed positions is at most {}{}.", *bound,
+            "The error estimate of the displayed positions is {}{}.", *estimate,
             plan.horizon_s
                 ? "; after that the motion cannot be predicted, and the figures show one possible motion"
-                : ", shown by tighter runs");
+                : ", from tighter runs");
     } else if (plan.horizon_s) {
         text += "The motion cannot be predicted: the figures show one possible motion.";
     } else {
-        text += "There is no bound of its error.";
+        text += "There is no estimate of its error.";
     }
     return text;
 }

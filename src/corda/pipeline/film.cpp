@@ -203,9 +203,9 @@ struct Film::Impl {
 
     /// The caption of the state in a draw context.
     view::Caption caption_of(const DrawContext& by, const view::Camera& map) const {
-        std::optional<double> bound_px;
-        if (plan.error_bound_m) bound_px = *plan.error_bound_m * map.pixels_per_metre();
-        const std::string method = method_caption(plan, bound_px, scene.overlay.language);
+        std::optional<double> estimate_px;
+        if (plan.error_estimate_m) estimate_px = *plan.error_estimate_m * map.pixels_per_metre();
+        const std::string method = method_caption(plan, estimate_px, scene.overlay.language);
         view::Caption caption{by.state.time_s, by.figures.energy_error, method, {}, by.energy};
         by.renderer.locate_labels(by.state, map, caption);
         return caption;
@@ -349,10 +349,10 @@ const Plan& Film::plan() const {
     return impl_->plan;
 }
 
-std::optional<double> Film::error_bound_px() {
-    if (!plan().error_bound_m) return std::nullopt;
+std::optional<double> Film::error_estimate_px() {
+    if (!plan().error_estimate_m) return std::nullopt;
     const CameraDef& still = impl_->find_camera();
-    return *plan().error_bound_m * scene().video.height_px / view::least_height_m(still, *still.height_m);
+    return *plan().error_estimate_m * scene().video.height_px / view::least_height_m(still, *still.height_m);
 }
 
 const CameraDef& Film::camera() {

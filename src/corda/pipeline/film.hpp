@@ -72,10 +72,10 @@ class Film {
     /// The time of frame `k`: exactly k / fps, rounded once.
     [[nodiscard]] double time_s(std::int64_t k) const;
 
-    /// The method and the proof of its error.
+    /// The method and the estimate of its error.
     [[nodiscard]] const Plan& plan() const;
-    /// Bound on the displayed position error in pixels; std::nullopt if the plan has none.
-    [[nodiscard]] std::optional<double> error_bound_px();
+    /// Estimate of the displayed position error in pixels; std::nullopt if the plan has none.
+    [[nodiscard]] std::optional<double> error_estimate_px();
     /// The camera with center and height filled in (for one that moves, those without its path); a scene with
     /// this camera gives the same bytes. Simulates the motion to its end unless the scene gives both and has
     /// no supports.

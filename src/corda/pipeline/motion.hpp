@@ -35,7 +35,7 @@ class Motion : NonCopyable {
     Motion(const System& system, const WorldDef& world, std::vector<MethodDef> methods, Timeline timeline,
            std::size_t budget_bytes, std::optional<Quantity> quantity = {}, const StateFields& readings = {});
 
-    /// Calls a planner with the recording, in which it records the run that it has verified.
+    /// Calls a planner with the recording, in which it records the run that it chooses.
     Plan record(const std::function<Plan(const Timeline&, sim::Recording&)>& plan);
 
     /// Simulates the motion to its end. A run that diverges ends it early, which is no error. Throws as at(),

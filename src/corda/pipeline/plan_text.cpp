@@ -163,7 +163,7 @@ std::string reason_text(const BodyPlan& plan) {
             return "it keeps the bars of closed ropes and nets at their lengths";
         case PlanReason::kDependent:
             return "bars depend on each other at the start in such a way that no method can tell the true "
-                   "motion; there is no bound of the error";
+                   "motion; there is no estimate of the error";
     }
     return "";
 }
@@ -250,16 +250,17 @@ std::string method_names(const Plan& plan) {
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string method_caption(const Plan& plan, const std::optional<double>& error_bound_px, Language language) {
+std::string method_caption(const Plan& plan, const std::optional<double>& error_estimate_px,
+                           Language language) {
     std::string names = method_names(plan);
-    if (!error_bound_px) return names;
+    if (!error_estimate_px) return names;
     constexpr double kSmallest = 1e-3;  // with decimals
-    const std::string bound = *error_bound_px < kSmallest
-                                  ? view::power_text(*error_bound_px)
-                                  : fmt::format("{:g}", view::rounded_up(*error_bound_px));
+    const std::string estimate = *error_estimate_px < kSmallest
+                                     ? view::power_text(*error_estimate_px)
+                                     : fmt::format("{:g}", view::rounded_up(*error_estimate_px));
     return names + ", " +
            fmt::format(fmt::runtime(view::translated("error below {} px", language)),
-                       view::localized(bound, language));
+                       view::localized(estimate, language));
 }
 
 Error pipeline::explained(const Refusal& refusal, const Scene& scene) {
@@ -317,22 +318,22 @@ std::vector<std::string> modelled_terms(const Scene& scene, const Plan& plan) {
     return terms;
 }
 
-std::optional<std::string> bound_text(Film& film) {
+std::optional<std::string> error_estimate_text(Film& film) {
     const Plan& plan = film.plan();
     std::optional<double> largest_m;
-    std::vector<std::size_t> unbounded;
+    std::vector<std::size_t> without_estimate;
     for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
-        if (plan.bodies[i].error_bound_m)
-            largest_m = std::max(largest_m.value_or(0.0), *plan.bodies[i].error_bound_m);
+        if (plan.bodies[i].error_estimate_m)
+            largest_m = std::max(largest_m.value_or(0.0), *plan.bodies[i].error_estimate_m);
         else
-            unbounded.push_back(i);
+            without_estimate.push_back(i);
     }
     if (!largest_m || plan.horizon_s == 0.0) return std::nullopt;
     const double pixels_per_metre = film.scene().video.height_px / film.camera().height_m.value();
     std::string text = fmt::format("{:.2g} px, {:.2g} m", view::rounded_up(pixels_per_metre * *largest_m),
                                    view::rounded_up(*largest_m));
     if (plan.horizon_s) text += fmt::format(", up to {:.6g} s", *plan.horizon_s);
-    if (!unbounded.empty()) text += ", except " + bodies_text(film.system(), unbounded);
+    if (!without_estimate.empty()) text += ", except " + bodies_text(film.system(), without_estimate);
     return text;
 }
 

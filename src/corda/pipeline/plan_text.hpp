@@ -50,16 +50,16 @@ struct MethodGroup {
 /// The methods' names: "exact, rattle".
 [[nodiscard]] std::string method_names(const Plan& plan);
 
-/// The methods' names with the bound of the displayed error: "exact, error below 0.031 px".
-[[nodiscard]] std::string method_caption(const Plan& plan, const std::optional<double>& error_bound_px,
+/// The methods' names with the estimate of the displayed error: "exact, error below 0.031 px".
+[[nodiscard]] std::string method_caption(const Plan& plan, const std::optional<double>& error_estimate_px,
                                          Language language);
 
 /// The terms of the model, one per line. Omits terms that the scene does not ask for.
 [[nodiscard]] std::vector<std::string> modelled_terms(const Scene& scene, const Plan& plan);
 
-/// The bound on the error of all bodies that have one: "0.06 px, 0.0003 m, up to 0.75 s, except net 1";
+/// The error estimate of all bodies that have one: "0.06 px, 0.0003 m, up to 0.75 s, except net 1";
 /// std::nullopt if none has one, or if predictability ends at the start.
-[[nodiscard]] std::optional<std::string> bound_text(Film& film);
+[[nodiscard]] std::optional<std::string> error_estimate_text(Film& film);
 
 /// The texts of a picture file: program, scene, times in s, frames unless empty, and provenance
 /// (provenance_text).

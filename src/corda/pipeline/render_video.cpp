@@ -71,8 +71,8 @@ media::VideoMetadata metadata(Film& film, std::int64_t first, std::int64_t end,
                               {"scene", title},
                               {"first_frame", first},
                               {"method", method_names(film.plan())},
-                              {"error_bound_m", or_null(film.plan().error_bound_m)},
-                              {"error_bound_px", or_null(film.error_bound_px())},
+                              {"error_estimate_m", or_null(film.plan().error_estimate_m)},
+                              {"error_estimate_px", or_null(film.error_estimate_px())},
                               {"horizon_s", or_null(film.plan().horizon_s)}};
     // Without the range of frames, so that a picture has the bytes of the still.
     const std::string of_picture = provenance_text(made);

@@ -61,15 +61,15 @@ corda::Image to_image(const py::object& picture) {
 py::dict plan(PyFilm& film) {
     return film.with_film([](corda::Film& shown) {
         const corda::Plan& chosen = shown.plan();
-        const auto bound_px = shown.error_bound_px();
+        const auto estimate_px = shown.error_estimate_px();
         const py::gil_scoped_acquire hold;
         py::list methods;
         for (const corda::BodyPlan& body : chosen.bodies)
             methods.append(std::string(corda::method_name(body.method)));
         py::dict all;
         all["methods"] = methods;
-        all["error_bound_m"] = chosen.error_bound_m;
-        all["error_bound_px"] = bound_px;
+        all["error_estimate_m"] = chosen.error_estimate_m;
+        all["error_estimate_px"] = estimate_px;
         all["horizon_s"] = chosen.horizon_s;
         all["notes"] = chosen.notes;
         return all;

@@ -284,7 +284,7 @@ std::vector<Key> solver_keys() {
     std::vector<Key> keys{
         {"solver", "method", one_of(methods), "", field(&SolverTable::method), "the method"},
         {"solver", "tolerance_px", number(kAbove0), "px", field(&AutoDef::tolerance_px),
-         "the bound of the displayed position error"},
+         "the error estimate of displayed positions stays below it"},
     };
     const std::vector<Key> named = method_keys("solver");
     keys.insert(keys.end(), named.begin(), named.end());

@@ -158,7 +158,7 @@ std::vector<Key> overlay_keys() {
         {"overlay", "energy", boolean, "", field(&OverlayDef::energy),
          "the error of the energy, next to the time", "left out if there is no room"},
         {"overlay", "method", boolean, "", field(&OverlayDef::method),
-         "the method and the bound of the displayed error, below the title"},
+         "the method and its error estimate, below the title"},
         {"overlay", "plots", live_plots(), "", field(&OverlayDef::plots), "live plots next to the picture",
          "over time: energies, angles of ropes, distance of the tips of ropes 0 and 1, x and y of the first "
          "tip; phase: angular velocity against angle"},

@@ -16,7 +16,7 @@
 #pragma GCC visibility push(default)
 namespace corda {
 
-/// Method `auto`: the loosest method that keeps the displayed error below a bound, proved by a tighter run.
+/// Method `auto`: the loosest method that keeps its estimate of the displayed error below a tolerance.
 struct AutoDef {
     static constexpr std::string_view kName = "auto";
 

@@ -71,7 +71,7 @@ Json json_of(const SceneNumber& number, const NumberChanges& changes) {
 std::vector<std::string> plan_lines(Film& film) {
     std::vector<std::string> lines{system_text(film.system()),
                                    "method: " + plan_text(film.system(), film.plan())};
-    if (const auto bound = bound_text(film)) lines.push_back("displayed error at most " + *bound);
+    if (const auto estimate = error_estimate_text(film)) lines.push_back("error estimate " + *estimate);
     if (film.plan().horizon_s)
         lines.push_back(fmt::format("predictability ends at {:.6g} s", *film.plan().horizon_s));
     for (const std::string& note : film.plan().notes) lines.push_back(note);

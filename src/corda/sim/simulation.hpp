@@ -118,7 +118,7 @@ struct Trial {
     std::uint64_t steps = 0;
     std::uint64_t check_steps = 0;      ///< of one tighter run
     double largest_difference_m = 0.0;  ///< up to `reached_s`
-    double error_bound_m = 0.0;         ///< up to `reached_s`
+    double error_estimate_m = 0.0;      ///< up to `reached_s`
     double reached_s = 0.0;             ///< last frame time up to which the error is within the tolerance
     double hundredth_s = 0.0;           ///< the same for a hundredth of the tolerance
     bool to_the_end = false;            ///< within the tolerance at all frame times
@@ -141,13 +141,13 @@ enum class StandsStill {
     kRow,    ///< a straight row of bars between pins holds it
 };
 
-/// The method that moves a body and, if `auto` chose it, the proof that it is good enough.
+/// The method that moves a body and, if `auto` chose it, what shows that it is good enough.
 struct BodyPlan {
     MethodDef method;  ///< with every default filled in: given again, it runs with the same bits
     PlanReason reason = PlanReason::kNamed;
-    /// Bound on the error of every position at every frame time up to the horizon. std::nullopt if no method
-    /// can determine the true motion, or if the scene names the method.
-    std::optional<double> error_bound_m;
+    /// Estimate of the largest error of a position at the frame times up to the horizon. std::nullopt if no
+    /// method can determine the true motion, or if the scene names the method.
+    std::optional<double> error_estimate_m;
     /// The last frame time at which a run and a much tighter one agree within the tolerance: later positions
     /// are those of one possible motion. std::nullopt if the scene ends before.
     std::optional<double> horizon_s;
@@ -161,8 +161,8 @@ struct BodyPlan {
 /// The methods that run a scene.
 struct Plan {
     std::vector<BodyPlan> bodies;  ///< one per body of the System
-    /// The largest bound of a body; std::nullopt if one has none.
-    std::optional<double> error_bound_m;
+    /// The largest estimate of a body; std::nullopt if one has none.
+    std::optional<double> error_estimate_m;
     std::optional<double> horizon_s;  ///< the earliest of a body
     /// Number of integrations of the whole scene: each body is weighted by its particles, and the sum is
     /// rounded up.

@@ -43,7 +43,7 @@ report::Table rows_table(const std::vector<Measured>& cases) {
         }
     }
     table.note =
-        "Of method auto, the bound that it claims for this run; of the others, the bound in tests/accuracy.";
+        "Of method auto, its error estimate for this run; of the others, the bound in tests/accuracy.";
     return table;
 }
 
@@ -116,8 +116,8 @@ AccuracyRow run_auto(const AccuracyCase& given, const Timing& timing) {
     const BodyPlan plan = sim::plan_body(system, problem.world, {tolerance_m, timeline, {}, {}}, unread);
     AccuracyRow row = compare_with_reference(given, {"auto", plan.method}, timing);
     row.title += fmt::format(" (auto chose {})", method_name(plan.method));
-    row.bound = plan.error_bound_m.value_or(0.0) / problem.length_m + kReferenceError;
-    if (plan.horizon_s) row.failure = fmt::format("auto claims no bound after {:.3g} s", *plan.horizon_s);
+    row.bound = plan.error_estimate_m.value_or(0.0) / problem.length_m + kReferenceError;
+    if (plan.horizon_s) row.failure = fmt::format("auto estimates no error after {:.3g} s", *plan.horizon_s);
     return row;
 }
 

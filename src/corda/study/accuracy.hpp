@@ -37,7 +37,7 @@ struct AccuracyRow {
     std::string title;  ///< of the case; for auto with the method that it chose
     std::string method;
     double error = 0.0;
-    std::optional<double> bound;  ///< of auto: the bound that it claims
+    std::optional<double> bound;  ///< of auto: its error estimate
     double wall_ms = 0.0;         ///< of one run
     double ms_per_simulated_s = 0.0;
     std::string failure;  ///< empty if there is an error

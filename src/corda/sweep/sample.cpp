@@ -36,8 +36,8 @@ Json info_of(Film& film, const SweepDef& sweep, const Sample& sample) {
             {"camera", {{"center", {camera.center_m->x, camera.center_m->y}}, {"height", *camera.height_m}}},
             {"px_per_m", video.height_px / *camera.height_m},
             {"method", method_names(film.plan())},
-            {"error_bound_m", or_null(sample.summary.error_bound_m)},
-            {"error_bound_px", or_null(sample.summary.error_bound_px)},
+            {"error_estimate_m", or_null(sample.summary.error_estimate_m)},
+            {"error_estimate_px", or_null(sample.summary.error_estimate_px)},
             {"horizon_s", or_null(sample.summary.horizon_s)},
             {"summary", summary}};
 }

@@ -16,8 +16,8 @@ constexpr std::array<SummaryColumn, 9> kColumns{{{"period_s", &Summary::period_s
                                                  {"speed_max_m_s", &Summary::speed_max_m_s},
                                                  {"strain_max", &Summary::strain_max},
                                                  {"energy_error", &Summary::energy_error},
-                                                 {"error_bound_m", &Summary::error_bound_m},
-                                                 {"error_bound_px", &Summary::error_bound_px},
+                                                 {"error_estimate_m", &Summary::error_estimate_m},
+                                                 {"error_estimate_px", &Summary::error_estimate_px},
                                                  {"horizon_s", &Summary::horizon_s}}};
 
 /// The cubic polynomial of s, 0 .. 1, with these values and derivatives at its ends.
@@ -122,8 +122,8 @@ Summary SummaryReader::summary() {
     const Figures& largest = film_->diagnostics().largest;
     summary_.strain_max = largest.strain;
     summary_.energy_error = largest.energy_error;
-    summary_.error_bound_m = film_->plan().error_bound_m;
-    summary_.error_bound_px = film_->error_bound_px();
+    summary_.error_estimate_m = film_->plan().error_estimate_m;
+    summary_.error_estimate_px = film_->error_estimate_px();
     summary_.horizon_s = film_->plan().horizon_s;
     return summary_;
 }

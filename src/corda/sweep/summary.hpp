@@ -18,8 +18,8 @@ struct Summary {
     std::optional<double> speed_max_m_s;
     std::optional<double> strain_max;
     std::optional<double> energy_error;
-    std::optional<double> error_bound_m;
-    std::optional<double> error_bound_px;
+    std::optional<double> error_estimate_m;
+    std::optional<double> error_estimate_px;
     std::optional<double> horizon_s;
 };
 

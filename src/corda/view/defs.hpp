@@ -127,7 +127,7 @@ struct OverlayDef {
     std::optional<bool> legend;     ///< the scales of style.color_by and style.arrows; default: as `time`
     std::string title;              ///< UTF-8, of characters that a font of the system has; empty: none
     bool energy = false;            ///< the error of the energy (Figures::energy_error)
-    bool method = false;            ///< the methods, and the bound of the displayed error
+    bool method = false;            ///< the methods, and their error estimate
     std::vector<LivePlot> plots;    ///< each once; a frame without room for all shows the first ones
     Language language = Language::kEnglish;
     std::vector<OverlayTextDef> texts;  ///< not in a picture of several poses

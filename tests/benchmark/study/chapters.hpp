@@ -13,7 +13,7 @@ struct Options {
 /// XPBD with small steps beside method exact, on four pendulums.
 [[nodiscard]] report::Chapter challenge_chapter(const Options& options);
 
-/// The claimed horizons of random chaotic scenes, and when the true error passes the bound.
+/// The claimed horizons of random chaotic scenes, and when the true error passes the estimate.
 [[nodiscard]] report::Chapter horizons_chapter(const Options& options);
 
 }  // namespace corda::benchmark

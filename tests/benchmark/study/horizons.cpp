@@ -9,7 +9,7 @@
 
 #include "benchmark/study/chapters.hpp"
 #include "corda/core/basics.hpp"
-#include "support/bound_families.hpp"
+#include "support/estimate_families.hpp"
 
 namespace corda::benchmark {
 namespace {
@@ -21,17 +21,17 @@ struct Observed {
     int without_horizon = 0;
     int not_passed = 0;  ///< the scene ends first
     int not_judged = 0;
-    int is_false = 0;  ///< the error passes the bound before the horizon
+    int is_false = 0;  ///< the error passes the estimate before the horizon
 };
 
-test::BoundFamily family_of(std::string_view name) {
+test::EstimateFamily family_of(std::string_view name) {
     const auto families = test::rope_families();
     return *std::find_if(families.begin(), families.end(),
-                         [&](const test::BoundFamily& family) { return family.name == name; });
+                         [&](const test::EstimateFamily& family) { return family.name == name; });
 }
 
-void judge(test::BoundCase given, Observed& observed) {
-    const test::Verdict verdict = test::judge_bound(given, true);
+void judge(test::EstimateCase given, Observed& observed) {
+    const test::Verdict verdict = test::judge_estimate(given, true);
     if (!verdict.ratio) {
         ++observed.not_judged;
     } else if (!verdict.horizon_s || *verdict.horizon_s == 0.0) {
@@ -56,7 +56,7 @@ report::Chapter horizons_chapter(const Options& options) {
     report::Table table{"horizons", chapter.title, {}, {}, {}};
     table.columns = {{"family", "ropes"},
                      {"scenes", "scenes"},
-                     {"horizons", "passed their bound after the horizon"},
+                     {"horizons", "passed their estimate after the horizon"},
                      {"false", "before it"},
                      {"without", "no horizon"},
                      {"not_passed", "not passed at the end"},
@@ -67,7 +67,7 @@ report::Chapter horizons_chapter(const Options& options) {
                      {"largest", "largest"}};
     report::Plot plot;
     plot.id = "horizons";
-    plot.title = "The time at which the true error passes the bound, over the claimed horizon";
+    plot.title = "The time at which the true error passes the estimate, over the claimed horizon";
     plot.x_title = "claimed horizon [s]";
     plot.y_title = "observed / claimed";
     plot.log_y = false;

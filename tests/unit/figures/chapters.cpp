@@ -21,7 +21,7 @@ TEST(Chapters, DescribeThePendulum) {
         motion_chapter(scene.film, scene.motion, find_figure_times(scene.film, scene.motion, {}), write);
     EXPECT_THAT(motion.summary, AllOf(HasSubstr("2 particles, 1 bar (1 real); gravity of (0, -9.81) m/s2"),
                                       HasSubstr("Method: exact at tolerance 1e-09, because the scene asks "
-                                                "for exact. There is no bound of its error.")));
+                                                "for exact. There is no estimate of its error.")));
     ASSERT_EQ(motion.pictures.size(), 6U);
     EXPECT_THAT(motion.pictures[0].caption, HasSubstr("the last is where the first swing ends"));
     EXPECT_EQ(motion.pictures[1].caption, "The scene at t = 0 s.");

@@ -74,7 +74,7 @@ TEST(FilmPasses, IncludeFailedTrials) {
     EXPECT_EQ(film.simulation_passes(), 2 * static_cast<int>(film.plan().bodies.front().trials.size()) + 2);
 }
 
-TEST(FilmMotion, IsTheVerifiedRun) {
+TEST(FilmMotion, IsTheCheckedRun) {
     Film film = film_of(kRope);
     Simulation again(film.system(), film.scene().world, film.plan().bodies.front().method);
     for (const std::int64_t k : {0, 11, 30}) {
@@ -227,9 +227,9 @@ TEST(FilmPlan, OfSeveralMethodsGivesTheSameBytesWhenFrozen) {
 
 TEST(FilmPlan, KeepsTheDisplayedErrorWithinTheTolerance) {
     Film film = film_by("tolerance_px = 0.01");
-    ASSERT_TRUE(film.error_bound_px().has_value());
-    EXPECT_LE(*film.error_bound_px(), 0.01);
-    EXPECT_FALSE(film_by("method = \"exact\"").error_bound_px().has_value());
+    ASSERT_TRUE(film.error_estimate_px().has_value());
+    EXPECT_LE(*film.error_estimate_px(), 0.01);
+    EXPECT_FALSE(film_by("method = \"exact\"").error_estimate_px().has_value());
 }
 
 TEST(FilmProgress, CanStopTheSimulation) {
@@ -344,7 +344,7 @@ TEST(FilmOfABuiltScene, NeedsOnlyPoints) {
     scene.video.height_px = 64;
     Film film(scene);
     EXPECT_EQ(film.frame(3).width(), 64);
-    EXPECT_TRUE(film.error_bound_px().has_value());
+    EXPECT_TRUE(film.error_estimate_px().has_value());
 }
 
 TEST(FilmOfABuiltScene, RefusesFieldsOutsideOfTheirDeclaredRange) {

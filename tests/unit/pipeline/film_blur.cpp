@@ -48,7 +48,7 @@ TEST(FilmBlur, DoesNotChangePlansStatesAndStills) {
     EXPECT_FALSE(blurred == sharp.frame(9));
     EXPECT_TRUE(equal_images(film.still(film.time_s(9)), sharp.frame(9)));
     EXPECT_TRUE(equal_images(sharp.still(film.time_s(9), 0.75), film.frame(9)));
-    EXPECT_EQ(film.plan().error_bound_m, sharp.plan().error_bound_m);
+    EXPECT_EQ(film.plan().error_estimate_m, sharp.plan().error_estimate_m);
     for (const std::int64_t k : {0, 9, 10, 30}) {
         EXPECT_EQ(film.state(k).x_m, sharp.state(k).x_m);
         EXPECT_EQ(film.state(k).y_m, sharp.state(k).y_m);

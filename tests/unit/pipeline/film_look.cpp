@@ -40,8 +40,8 @@ TEST(FilmLook, HasThePlanOfItsFilm) {
     look.video.width_px *= 2;
     look.video.height_px *= 2;
     Film shown = FilmRenderer::another_look(film, look);
-    EXPECT_EQ(shown.plan().error_bound_m, film.plan().error_bound_m);
-    EXPECT_NEAR(*shown.error_bound_px(), 2.0 * *film.error_bound_px(), 0.1 * *film.error_bound_px());
+    EXPECT_EQ(shown.plan().error_estimate_m, film.plan().error_estimate_m);
+    EXPECT_NEAR(*shown.error_estimate_px(), 2.0 * *film.error_estimate_px(), 0.1 * *film.error_estimate_px());
 }
 
 TEST(FilmLook, RefusesQuantitiesThatTheMotionLacks) {

@@ -84,7 +84,7 @@ TEST_F(WatchTest, ShowsTheFramesOfTheFilm) {
     EXPECT_EQ(film["width"], 320);
     EXPECT_EQ(film["height"], 180);
     EXPECT_EQ(film["fps"], 30.0);
-    EXPECT_THAT(film["plan"].dump(), HasSubstr("displayed error at most"));
+    EXPECT_THAT(film["plan"].dump(), HasSubstr("error estimate"));
     Scene scene = parse_scene(kScene, "scene.toml");
     scene.video.width_px = 320;
     scene.video.height_px = 180;

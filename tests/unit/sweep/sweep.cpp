@@ -139,7 +139,7 @@ TEST_F(SweepRun, SamplesHaveArraysOfTheirShapes) {
     EXPECT_EQ(sample.info.at("parameters"), (Json{{"rope[0].hang.links", 3}}));
     EXPECT_EQ(sample.info.at("px_per_m").get<double>(),
               32.0 / sample.info.at("camera").at("height").get<double>());
-    for (const char* const key : {"error_bound_m", "error_bound_px", "horizon_s"})
+    for (const char* const key : {"error_estimate_m", "error_estimate_px", "horizon_s"})
         EXPECT_TRUE(sample.info.contains(key)) << key;
 }
 

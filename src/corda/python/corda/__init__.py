@@ -296,8 +296,8 @@ class Film:
 
     @property
     def plan(self):
-        """The plan of the film: a dictionary of methods (one per body), error_bound_m, error_bound_px and horizon_s; unknown
-        values are None."""
+        """The plan of the film: a dictionary of methods (one per body), error_estimate_m, error_estimate_px and horizon_s;
+        unknown values are None."""
         return self._film.plan()
 
     @property
@@ -366,8 +366,8 @@ def write_png(path, picture, *, force=False):
     _corda.write_png(_path(path), picture, bool(force))
 
 
-_OF_A_SAMPLE = ("key", "sample", "split", "parameters", "fps", "camera", "px_per_m", "method", "error_bound_m",
-                "error_bound_px", "horizon_s", "summary")
+_OF_A_SAMPLE = ("key", "sample", "split", "parameters", "fps", "camera", "px_per_m", "method", "error_estimate_m",
+                "error_estimate_px", "horizon_s", "summary")
 
 
 def sweep(path, *, shard=None):
@@ -378,8 +378,8 @@ def sweep(path, *, shard=None):
     shard=(worker.id, worker.num_workers). Call this in the process that reads the samples.
 
     A sample has "key", "sample" (its number), "split" (None without splits), "parameters" (a dictionary by the keys of the
-    scene), "fps" (a Fraction), "camera" (center and height in m), "px_per_m", "method", "error_bound_m", "error_bound_px",
-    "horizon_s" and "summary", whose unknown values are None; "times" in s; the arrays of output.labels of the file,
+    scene), "fps" (a Fraction), "camera" (center and height in m), "px_per_m", "method", "error_estimate_m",
+    "error_estimate_px", "horizon_s" and "summary", whose unknown values are None; "times" in s; the arrays of output.labels of the file,
     "positions", "velocities", "tensions", "energy", "pixels" and "mask", which are those of a Film for all frames; and
     "frames", numpy uint8 of shape (frames, height, width, 4), unless output.pictures is "none". No file is written.
 

@@ -13,8 +13,8 @@ class Error(Exception):
 
 class Plan(TypedDict):
     methods: list[str]
-    error_bound_m: float | None
-    error_bound_px: float | None
+    error_estimate_m: float | None
+    error_estimate_px: float | None
     horizon_s: float | None
 
 class Camera(TypedDict):
@@ -90,8 +90,8 @@ class Sample(TypedDict):
     camera: SampleCamera
     px_per_m: float
     method: str
-    error_bound_m: float | None
-    error_bound_px: float | None
+    error_estimate_m: float | None
+    error_estimate_px: float | None
     horizon_s: float | None
     summary: dict[str, float | None]
     times: NDArray[np.float64]

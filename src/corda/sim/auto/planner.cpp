@@ -20,8 +20,8 @@ constexpr std::array<double, 16> kTolerance{1.0,  1e-1, 1e-2,  1e-3,  1e-4,  1e-
 constexpr std::size_t kMaxDigits = 3;
 constexpr std::size_t kNextDigits = 2;  ///< more than the last trial's
 /// More than the run's. By chance a run may err far less than its tolerance, and its check as much. False
-/// claims of 900 random chains: 2 at 2, none at 3 (worst 0.44 of the bound) and 4 (0.35); of 400 strings that
-/// stretch, 9 at 2 and none at 4.
+/// estimates of 900 random chains: 2 at 2, none at 3 (worst 0.44 of the estimate) and 4 (0.35); of 400
+/// strings that stretch, 9 at 2 and none at 4.
 constexpr std::size_t kCheckDigits = 4;
 /// For rigid nets, whose plans cost more: DOP853 takes fixed orders, so that a check at a thousandth errs
 /// some 500 times less at all times.
@@ -47,8 +47,8 @@ struct Rung {
 };
 constexpr std::array<Rung, 6> kGraphLadder{{{2, 0}, {4, 0}, {4, 1}, {6, 1}, {8, 1}, {8, 2}}};
 /// Step and guard of a check as a share of its trial's. `rattle` halves steps where bars whip: with the same
-/// guard, run and check may take the same steps and have the same errors. False claims of 1000 rings: 20 at
-/// 1/2 of the step, 2 (by 1.5 at most) at 1/3.
+/// guard, run and check may take the same steps and have the same errors. False estimates of 1000 rings: 20
+/// at 1/2 of the step, 2 (by 1.5 at most) at 1/3.
 constexpr double kCheckStep = 1.0 / 3.0;
 /// Steps divide this, whatever the video's frame interval is, so that a preview shows the same motion.
 constexpr double kNominalIntervalSeconds = 1.0 / 60.0;
@@ -194,7 +194,7 @@ void record(const System& system, const WorldDef& world, const PlanDef& def, Bod
     }
 }
 
-/// Runs the trials, cheapest first, until one proves its error, and makes it or the last one the plan.
+/// Runs the trials, cheapest first, until one holds to the end, and makes it or the last one the plan.
 void run_until_one_holds(const System& system, const WorldDef& world, const PlanDef& def,
                          std::vector<Trial> trials, BodyPlan& plan, Recording& recording) {
     const double end_s = def.timeline.time_s(def.timeline.size() - 1);
@@ -220,20 +220,20 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
         break;
     }
     const Trial& chosen = plan.trials.back();
-    plan.error_bound_m = chosen.error_bound_m;
+    plan.error_estimate_m = chosen.error_estimate_m;
     if (!chosen.to_the_end) plan.horizon_s = chosen.reached_s;
     plan.undecided = chosen.undecided;
     plan.diverges = recording.size() < def.timeline.size();
 }
 
-/// Makes `relaxation` the plan, without a bound on its error, with enough sweeps to keep a cloth of some
+/// Makes `relaxation` the plan, without an estimate of its error, with enough sweeps to keep a cloth of some
 /// thirty rows from sagging like rubber.
 void fall_back(const System& system, const WorldDef& world, const PlanDef& def, BodyPlan& plan,
                Recording& recording) {
     constexpr int kSweeps = 8;
     constexpr double kSteps = 4.0;  // in the nominal interval
     plan.method = RelaxationDef{kNominalIntervalSeconds / kSteps, kSweeps};
-    plan.error_bound_m = std::nullopt;
+    plan.error_estimate_m = std::nullopt;
     plan.horizon_s = std::nullopt;
     plan.diverges = false;
     plan.reason = PlanReason::kDependent;
@@ -274,16 +274,16 @@ StandsStill why_still(const System& system, const Recording& recording) {
 
 /// Combines the plans of the bodies, and counts how often all particles together were integrated.
 void sum_up(const System& system, Plan& plan) {
-    plan.error_bound_m = 0.0;
+    plan.error_estimate_m = 0.0;
     std::size_t integrated = 0;
     for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
         const BodyPlan& body = plan.bodies[i];
         integrated += static_cast<std::size_t>(body.passes) * system.bodies[i].particle_count;
         if (body.horizon_s) plan.horizon_s = std::min(*body.horizon_s, plan.horizon_s.value_or(HUGE_VAL));
-        if (!body.error_bound_m)
-            plan.error_bound_m = std::nullopt;
-        else if (plan.error_bound_m)
-            plan.error_bound_m = std::max(*plan.error_bound_m, *body.error_bound_m);
+        if (!body.error_estimate_m)
+            plan.error_estimate_m = std::nullopt;
+        else if (plan.error_estimate_m)
+            plan.error_estimate_m = std::max(*plan.error_estimate_m, *body.error_estimate_m);
     }
     const std::size_t particles = system.particle_count();
     plan.simulation_passes = static_cast<int>((integrated + particles - 1) / particles);

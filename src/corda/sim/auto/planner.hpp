@@ -100,8 +100,8 @@ class Checks : NonCopyable {
     std::vector<std::future<Status>> pending_;  ///< declared last: it ends before what it uses does
 };
 
-/// Finds a method whose positions stay within the tolerance for the only body of `system`, and verifies it by
-/// tighter runs (section 3.6 of src/corda/sim/README.md). `recording` then holds the states of the verified
+/// Finds a method whose positions stay within the tolerance for the only body of `system`, and estimates its
+/// error by tighter runs (section 3.6 of src/corda/sim/README.md). `recording` then holds the states of that
 /// run, which are drawn. If no trial stays within the tolerance to the end, the tightest is taken, with a
 /// horizon. Decisions depend on counts and positions, never on a clock. Throws corda::Refusal if no method
 /// can run the body.

@@ -54,9 +54,9 @@ std::vector<double> rounding_of_snaps_m(const System& string, std::size_t check)
     return longer_m;
 }
 
-/// Ratio of the bound on an error to the difference from a check. The error may exceed the difference by the
+/// Ratio of the error estimate to the difference from a check. The error may exceed the difference by the
 /// check's own error, a sixth of it near rounding.
-constexpr double kBoundPerDifference = 3.0;
+constexpr double kEstimatePerDifference = 3.0;
 
 /// The difference of two runs over time. The tolerance follows from the bounds of the whole motion and is
 /// known only at the end; until then that of the motion so far, which is no larger, is used.
@@ -68,13 +68,13 @@ class Comparison {
         if (records_.empty() || difference_m > records_.back().largest_m)
             records_.push_back({difference_m, time_s});
         records_.back().until_s = time_s;
-        has_parted_ =
-            !(kBoundPerDifference * records_.back().largest_m <= kHopeless * (*tolerance_m_)(bounds_so_far));
+        has_parted_ = !(kEstimatePerDifference * records_.back().largest_m <=
+                        kHopeless * (*tolerance_m_)(bounds_so_far));
     }
 
-    /// Bound of the error so far, without rounding.
-    [[nodiscard]] double bound_m() const {
-        return records_.empty() ? 0.0 : kBoundPerDifference * records_.back().largest_m;
+    /// Estimate of the error so far, without rounding.
+    [[nodiscard]] double estimate_m() const {
+        return records_.empty() ? 0.0 : kEstimatePerDifference * records_.back().largest_m;
     }
 
     /// True if the difference is more than the tolerance will ever allow.
@@ -82,7 +82,7 @@ class Comparison {
 
     void conclude(const MotionBounds& bounds, double hidden_m, Trial& trial) const {
         const double tolerance_m = (*tolerance_m_)(bounds);
-        const double allowed_m = (tolerance_m - hidden_m) / kBoundPerDifference;
+        const double allowed_m = (tolerance_m - hidden_m) / kEstimatePerDifference;
         trial.to_the_end = !has_parted_ && !records_.empty() && records_.back().largest_m <= allowed_m;
         for (const Record& record : records_) {
             if (!(record.largest_m <= allowed_m)) break;
@@ -90,7 +90,7 @@ class Comparison {
             if (record.largest_m <= kHundredth * allowed_m) trial.hundredth_s = record.until_s;
             trial.largest_difference_m = record.largest_m;
         }
-        trial.error_bound_m = kBoundPerDifference * trial.largest_difference_m + hidden_m;
+        trial.error_estimate_m = kEstimatePerDifference * trial.largest_difference_m + hidden_m;
     }
 
   private:
@@ -312,7 +312,7 @@ class OtherSnaps {
     /// The largest difference of `state`, the run's, from the checks and from other outcomes at a frame time.
     double difference_m(double time_s, const Checks& checks, const State& state, const MotionBounds& bounds,
                         int& passes) {
-        const double error_m = alone_.bound_m() + rounding_m(system_, bounds);
+        const double error_m = alone_.estimate_m() + rounding_m(system_, bounds);
         const double difference_m = checks.difference_m(state);
         alone_.add(time_s, difference_m, bounds);
         const double margin_m = checks.margin_m();
@@ -336,7 +336,7 @@ class OtherSnaps {
     }
 
   private:
-    /// A decision whose margin exceeds this multiple of the error bound is the true one.
+    /// A decision whose margin exceeds this multiple of the error estimate is the true one.
     static constexpr double kSure = 4.0;
     /// Displacement of snaps in parts of the margins that it covers.
     static constexpr double kCovers = 2.0;
@@ -401,7 +401,7 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
     trial.steps = run.diagnostics().steps;
     trial.check_steps = checks.steps();
     comparison.conclude(recording.bounds(), hidden_m(system, trial), trial);
-    trial.error_bound_m += rounding_m(system, recording.bounds());
+    trial.error_estimate_m += rounding_m(system, recording.bounds());
     trial.to_the_end = trial.to_the_end && !trial.diverged && !is_too_slow;
     trial.undecided = !trial.to_the_end && other_snaps.reached_s(recording.bounds()) > trial.reached_s;
 }

@@ -41,7 +41,7 @@ TEST(AutoPlan, IsTheSameOnEveryRun) {
     const BodyPlan a = plan_of(rope, 1e-4, 300);
     const BodyPlan b = plan_of(rope, 1e-4, 300);
     EXPECT_EQ(std::get<ExactDef>(a.method).tolerance, std::get<ExactDef>(b.method).tolerance);
-    EXPECT_EQ(a.error_bound_m, b.error_bound_m);
+    EXPECT_EQ(a.error_estimate_m, b.error_estimate_m);
     EXPECT_EQ(a.horizon_s, b.horizon_s);
 }
 
@@ -64,7 +64,7 @@ TEST(AutoPlan, GivesRigidBarsOfAGraphRattle) {
     const BodyPlan plan = plan_of(test::ring(5), 1e-2, 10);
     EXPECT_TRUE(std::holds_alternative<RattleDef>(plan.method));
     EXPECT_EQ(plan.reason, PlanReason::kGraph);
-    EXPECT_LE(plan.error_bound_m.value(), 1e-2);
+    EXPECT_LE(plan.error_estimate_m.value(), 1e-2);
 }
 
 TEST(AutoPlan, GivesNetsOfParallelogramsAndTrianglesExact) {
@@ -73,11 +73,11 @@ TEST(AutoPlan, GivesNetsOfParallelogramsAndTrianglesExact) {
         const BodyPlan plan = test::plan_of(build_system({}, {&net, 1}), WorldDef{}, 1e-3, kFrames, 60);
         EXPECT_TRUE(std::holds_alternative<ExactDef>(plan.method));
         EXPECT_EQ(plan.reason, PlanReason::kExact);
-        EXPECT_LE(plan.error_bound_m.value(), 1e-3);
+        EXPECT_LE(plan.error_estimate_m.value(), 1e-3);
         net.points_m[9].x += 0.01;
         const BodyPlan other = test::plan_of(build_system({}, {&net, 1}), WorldDef{}, 1e-3, kFrames, 60);
         EXPECT_TRUE(std::holds_alternative<RattleDef>(other.method) || diagonals);
-        EXPECT_LE(other.error_bound_m.value(), 1e-3);
+        EXPECT_LE(other.error_estimate_m.value(), 1e-3);
     }
 }
 
@@ -89,7 +89,7 @@ TEST(AutoPlan, TakesTheSameStepAtEveryFrameRate) {
     EXPECT_EQ(quick.method, slow.method);
 }
 
-TEST(AutoPlan, GivesBarsThatDependOnEachOtherRelaxationWithoutABound) {
+TEST(AutoPlan, GivesBarsThatDependOnEachOtherRelaxationWithoutAnEstimate) {
     // In line: a bar from end to end makes it a rod, which the equations of the first order do not know.
     NetDef net;
     net.points_m = {{0.0, 0.0}, {1.0, -1.0}, {2.0, -2.0}, {3.0, -3.0}};
@@ -97,7 +97,7 @@ TEST(AutoPlan, GivesBarsThatDependOnEachOtherRelaxationWithoutABound) {
     net.pinned = {0};
     const BodyPlan plan = test::plan_of(build_system({}, {&net, 1}), WorldDef{}, 1e-3, kFrames, 60);
     EXPECT_TRUE(std::holds_alternative<RelaxationDef>(plan.method));
-    EXPECT_FALSE(plan.error_bound_m.has_value());
+    EXPECT_FALSE(plan.error_estimate_m.has_value());
     EXPECT_EQ(plan.reason, PlanReason::kDependent);
 }
 
@@ -129,8 +129,8 @@ TEST(AutoPlans, ChooseAMethodPerBodyAndRecordWhatTheyMove) {
     ASSERT_EQ(plan.bodies.size(), 2U);
     EXPECT_EQ(plan.bodies[0].reason, PlanReason::kExact);
     EXPECT_EQ(plan.bodies[1].reason, PlanReason::kGraph);
-    EXPECT_EQ(plan.error_bound_m,
-              std::max(plan.bodies[0].error_bound_m.value(), plan.bodies[1].error_bound_m.value()));
+    EXPECT_EQ(plan.error_estimate_m,
+              std::max(plan.bodies[0].error_estimate_m.value(), plan.bodies[1].error_estimate_m.value()));
     EXPECT_FALSE(plan.horizon_s.has_value());
     EXPECT_GE(plan.simulation_passes, 2);
     const std::vector<MethodDef> methods{plan.bodies[0].method, plan.bodies[1].method};
@@ -163,7 +163,7 @@ TEST(AutoPlan, TakesImplicitStepsForLongRopesThatHang) {
     for (const double angle_deg : {0.0, 30.0}) {
         const BodyPlan plan = plan_of(reference::straight_rope(1000, 1.0, angle_deg), 1.2e-4, 30);
         EXPECT_TRUE(is_implicit(plan.method));
-        EXPECT_LE(plan.error_bound_m, 1.2e-4);
+        EXPECT_LE(plan.error_estimate_m, 1.2e-4);
         EXPECT_FALSE(plan.horizon_s);
         EXPECT_EQ(plan.passes, 2);
         EXPECT_LE(plan.trials.back().check_steps, 2 * plan.trials.back().steps);
@@ -180,18 +180,18 @@ TEST(AutoPlan, TakesExplicitStepsForALongRopeThatIsRough) {
     const BodyPlan plan = plan_of(rope, 2e-4, 10);
     EXPECT_TRUE(is_implicit(plan.trials.front().method));
     EXPECT_FALSE(is_implicit(plan.method));
-    EXPECT_LE(plan.error_bound_m, 2e-4);
+    EXPECT_LE(plan.error_estimate_m, 2e-4);
     EXPECT_FALSE(plan.horizon_s);
 }
 
-TEST(AutoPlans, RunNamedMethodsUnchangedWithoutABound) {
+TEST(AutoPlans, RunNamedMethodsUnchangedWithoutAnEstimate) {
     Mixed mixed;
     const NamedMethods named{RelaxationDef{}, std::nullopt};
     const Plan plan = plan_methods(mixed.system, named, WorldDef{}, mixed.def, mixed.recording);
     EXPECT_EQ(plan.bodies[0].reason, PlanReason::kNamed);
     EXPECT_TRUE(std::get<RelaxationDef>(plan.bodies[0].method).step_s.has_value());  // filled in
-    EXPECT_TRUE(plan.bodies[1].error_bound_m.has_value());
-    EXPECT_FALSE(plan.error_bound_m.has_value());
+    EXPECT_TRUE(plan.bodies[1].error_estimate_m.has_value());
+    EXPECT_FALSE(plan.error_estimate_m.has_value());
     EXPECT_EQ(mixed.recording.size(), 31U);
 }
 
@@ -233,7 +233,7 @@ TEST(AutoPlans, RecogniseANetThatIsHeldStill) {
         Recording recording(system.particle_count(), timeline.size(), 0);
         const PlanDef def{[](const MotionBounds&) { return 1e-3; }, timeline, {}, {}};
         const Plan plan = plan_methods(system, NamedMethods(1), WorldDef{}, def, recording);
-        EXPECT_TRUE(plan.error_bound_m.has_value());
+        EXPECT_TRUE(plan.error_estimate_m.has_value());
         return plan.bodies.front().stands_still;
     };
     NetDef plate = test::cloth(5, 4, 0.1);

@@ -76,21 +76,21 @@ TEST(Trial, HasThreeChecksWhereRoundingMatters) {
     EXPECT_GT(later.trial.largest_difference_m, first.trial.largest_difference_m);
 }
 
-TEST(Trial, BoundIncludesTheRoundingOfFarPositions) {
+TEST(Trial, EstimateIncludesTheRoundingOfFarPositions) {
     RopeDef rope = reference::straight_rope(2, 1.0, 30.0);
     rope.origin_m = {1e8, 0.0};
     const Outcome outcome = outcome_of(rope, ExactDef{1e-8}, ExactDef{1e-10}, 1.0);
-    EXPECT_GT(outcome.trial.error_bound_m, 1.4e-8);  // an ulp there is 1.5e-8
-    EXPECT_LT(outcome.trial.error_bound_m, 1e-7);
+    EXPECT_GT(outcome.trial.error_estimate_m, 1.4e-8);  // an ulp there is 1.5e-8
+    EXPECT_LT(outcome.trial.error_estimate_m, 1e-7);
 }
 
-TEST(Trial, BoundIncludesHiddenVibrations) {
+TEST(Trial, EstimateIncludesHiddenVibrations) {
     // Two links of 5 cm as stiff as a beam: run and check take the same steps and damp what vibrates.
     RopeDef beam = reference::straight_rope(2, 0.1, 2.0);
     beam.bending_n_m2 = 625.0;
     const Outcome outcome = outcome_of(beam, ExactDef{1e-4}, ExactDef{1e-6}, 1e-3);
     EXPECT_TRUE(outcome.trial.to_the_end);
-    EXPECT_GE(outcome.trial.error_bound_m, 1e-6 * 0.1);
+    EXPECT_GE(outcome.trial.error_estimate_m, 1e-6 * 0.1);
 }
 
 /// A particle that falls from between two pins until links of these lengths stop it, after 0.46 s.
@@ -121,7 +121,7 @@ TEST(Trial, CoversBothOutcomesOfALinkThatBarelySnaps) {
         EXPECT_EQ(outcome.trial.undecided, tolerance_m == 1e-9);
         EXPECT_EQ(outcome.passes, 4);
         if (outcome.trial.to_the_end) {
-            EXPECT_GT(outcome.trial.error_bound_m, 2e-7);
+            EXPECT_GT(outcome.trial.error_estimate_m, 2e-7);
         }  // what the snap changes
     }
 }

@@ -1,4 +1,4 @@
-#include "support/bound_families.hpp"
+#include "support/estimate_families.hpp"
 
 #include <array>
 #include <cmath>
@@ -10,42 +10,42 @@ namespace {
 
 using Real = ExtendedMotion::Real;
 
-BoundCase few_links(Random& random) {
+EstimateCase few_links(Random& random) {
     return one_rope(random, crooked_rope(random, pick(random, 2, 8), any_angle(random), 1.5), 6.0);
 }
 
-BoundCase many_links(Random& random) {
+EstimateCase many_links(Random& random) {
     return one_rope(random, crooked_rope(random, pick(random, 10, 30), any_angle(random), 0.3), 3.0);
 }
 
 /// Long enough to reach a horizon.
-BoundCase chaos_few(Random& random) {
+EstimateCase chaos_few(Random& random) {
     return one_rope(random, crooked_rope(random, pick(random, 2, 8), 2.0 + pick_real(random, -0.5, 0.5), 0.5),
                     12.0);
 }
 
-BoundCase chaos_many(Random& random) {
+EstimateCase chaos_many(Random& random) {
     const double angle = (pick(random, 0, 1) == 0 ? 1.0 : -1.0) * pick_real(random, 1.4, 3.0);
     return one_rope(random, crooked_rope(random, pick(random, 10, 30), angle, pick_log(random, 1e-6, 0.3)),
                     8.0);
 }
 
-BoundCase straight_start(Random& random) {
+EstimateCase straight_start(Random& random) {
     const double angle_deg = std::round(pick_real(random, 80.0, 170.0));
-    BoundCase made = straight_rope(pick(random, 2, 30), 1.0, angle_deg);
+    EstimateCase made = straight_rope(pick(random, 2, 30), 1.0, angle_deg);
     made.scene.world.duration_s = 5.0;
     add_video(random, made.scene);
     return made;
 }
 
-BoundCase payload(Random& random) {
+EstimateCase payload(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 2, 10), any_angle(random), 1.0);
     rope.payload_kg = pick_log(random, 1.0, 1e6);
     if (pick(random, 0, 1) == 0) rope.mass_kg.assign(rope.points_m.size(), pick_log(random, 1e-3, 1.0));
     return one_rope(random, rope, 4.0);
 }
 
-BoundCase uneven(Random& random) {
+EstimateCase uneven(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 2, 12), any_angle(random), 1.0);
     const double spread = pick_log(random, 3.0, 1e3);
     for (std::size_t i = 1; i < rope.points_m.size(); ++i)
@@ -55,50 +55,50 @@ BoundCase uneven(Random& random) {
     return one_rope(random, rope, 4.0);
 }
 
-BoundCase two_pins(Random& random) {
+EstimateCase two_pins(Random& random) {
     const int links = pick(random, 3, 10);
     RopeDef rope = crooked_rope(random, links, any_angle(random), 1.2);
     rope.pinned = {0, static_cast<std::uint32_t>(links)};
     return one_rope(random, rope, 4.0);
 }
 
-BoundCase thrown(Random& random) {
+EstimateCase thrown(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 2, 10), any_angle(random), 1.0);
     throw_it(random, rope);
     return one_rope(random, rope, 3.0);
 }
 
-BoundCase weightless(Random& random) {
+EstimateCase weightless(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 2, 8), any_angle(random), 1.0);
     throw_it(random, rope);
     if (pick(random, 0, 1) == 0) rope.pinned = {0};
-    BoundCase made = one_rope(random, rope, 4.0);
+    EstimateCase made = one_rope(random, rope, 4.0);
     made.scene.world.gravity_m_s2 = {};
     return made;
 }
 
-BoundCase elastic(Random& random) {
+EstimateCase elastic(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 1, 8), any_angle(random), 1.0);
     rope.material.compliance_1_n = pick_log(random, 1e-5, 1e-2);
     return one_rope(random, rope, 3.0);
 }
 
 /// At rest in the rope's own shape, with vibrations of all sizes.
-BoundCase elastic_straight(Random& random) {
+EstimateCase elastic_straight(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 1, 6), pick_real(random, -1.6, 1.6), 0.0);
     rope.material.compliance_1_n = pick_log(random, 1e-7, 1e-4);
     rope.mass_kg.assign(rope.points_m.size(), pick_log(random, 0.01, 10.0));
     return one_rope(random, rope, 1.0);
 }
 
-BoundCase beam(Random& random) {
+EstimateCase beam(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 2, 5), any_angle(random), 0.3);
     rope.bending_n_m2 = pick_log(random, 0.01, 1e4);
     return one_rope(random, rope, 1.5);
 }
 
 /// Straight and stiff: fast, small vibrations.
-BoundCase beam_straight(Random& random) {
+EstimateCase beam_straight(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 2, 4), pick_real(random, -0.3, 0.3), 0.0);
     const double length_m = pick_log(random, 0.1, 3.0);
     for (Vec2& point : rope.points_m) point = length_m * point;
@@ -107,7 +107,7 @@ BoundCase beam_straight(Random& random) {
     return one_rope(random, rope, 1.5);
 }
 
-BoundCase elastic_beam(Random& random) {
+EstimateCase elastic_beam(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 2, 5), any_angle(random), 0.5);
     rope.bending_n_m2 = pick_log(random, 0.01, 100.0);
     rope.material.compliance_1_n = pick_log(random, 1e-5, 1e-2);
@@ -155,16 +155,16 @@ void add_video(Random& random, Scene& scene) {
     if (pick(random, 0, 3) == 0) scene.world.drag_1_s = pick_log(random, 0.01, 1.0);
 }
 
-BoundCase one_rope(Random& random, RopeDef rope, double duration_s) {
-    BoundCase made;
+EstimateCase one_rope(Random& random, RopeDef rope, double duration_s) {
+    EstimateCase made;
     made.scene.ropes = {std::move(rope)};
     made.scene.world.duration_s = duration_s;
     add_video(random, made.scene);
     return made;
 }
 
-BoundCase straight_rope(int links, double length_m, double angle_deg, const std::string& more) {
-    BoundCase made{parse_scene(
+EstimateCase straight_rope(int links, double length_m, double angle_deg, const std::string& more) {
+    EstimateCase made{parse_scene(
         "schema = 1\n" + more + "\n[[rope]]\nhang = { links = " + std::to_string(links) +
             ", length = " + std::to_string(length_m) + ", angle_deg = " + std::to_string(angle_deg) + " }\n",
         "straight.toml")};
@@ -174,7 +174,7 @@ BoundCase straight_rope(int links, double length_m, double angle_deg, const std:
     return made;
 }
 
-BoundCase BoundFamily::scene(unsigned n) const {
+EstimateCase EstimateFamily::scene(unsigned n) const {
     std::vector<std::uint32_t> numbers{n};
     for (const char* letter = name; *letter != '\0'; ++letter)
         numbers.push_back(static_cast<std::uint32_t>(*letter));
@@ -183,22 +183,22 @@ BoundCase BoundFamily::scene(unsigned n) const {
     return make(random);
 }
 
-std::span<const BoundFamily> rope_families() {
-    static const auto families = std::to_array<BoundFamily>({{"few_links", few_links},
-                                                             {"many_links", many_links},
-                                                             {"chaos_few", chaos_few},
-                                                             {"chaos_many", chaos_many},
-                                                             {"straight_start", straight_start},
-                                                             {"payload", payload},
-                                                             {"uneven", uneven},
-                                                             {"two_pins", two_pins},
-                                                             {"thrown", thrown},
-                                                             {"weightless", weightless},
-                                                             {"elastic", elastic},
-                                                             {"elastic_straight", elastic_straight},
-                                                             {"beam", beam},
-                                                             {"beam_straight", beam_straight},
-                                                             {"elastic_beam", elastic_beam}});
+std::span<const EstimateFamily> rope_families() {
+    static const auto families = std::to_array<EstimateFamily>({{"few_links", few_links},
+                                                                {"many_links", many_links},
+                                                                {"chaos_few", chaos_few},
+                                                                {"chaos_many", chaos_many},
+                                                                {"straight_start", straight_start},
+                                                                {"payload", payload},
+                                                                {"uneven", uneven},
+                                                                {"two_pins", two_pins},
+                                                                {"thrown", thrown},
+                                                                {"weightless", weightless},
+                                                                {"elastic", elastic},
+                                                                {"elastic_straight", elastic_straight},
+                                                                {"beam", beam},
+                                                                {"beam_straight", beam_straight},
+                                                                {"elastic_beam", elastic_beam}});
     return families;
 }
 

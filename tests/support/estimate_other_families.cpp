@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "support/bound_families.hpp"
+#include "support/estimate_families.hpp"
 
 namespace corda::test {
 namespace {
@@ -32,11 +32,11 @@ RopeDef string_rope(Random& random, int most_links) {
     return rope;
 }
 
-BoundCase string_few(Random& random) {
+EstimateCase string_few(Random& random) {
     return one_rope(random, string_rope(random, 4), 2.0);
 }
 
-BoundCase string_many(Random& random) {
+EstimateCase string_many(Random& random) {
     RopeDef rope = string_rope(random, 9);
     if (pick(random, 0, 1) == 0) {
         for (std::size_t i = 0; i < rope.points_m.size(); ++i)
@@ -46,14 +46,14 @@ BoundCase string_many(Random& random) {
 }
 
 /// Taut at the start, like a rope of the same shape, and high enough to go slack.
-BoundCase string_swing(Random& random) {
+EstimateCase string_swing(Random& random) {
     const double angle = (pick(random, 0, 1) == 0 ? 1.0 : -1.0) * pick_real(random, 1.2, 2.6);
     RopeDef rope = crooked_rope(random, pick(random, 1, 4), angle, 0.3);
     rope.material.is_string = true;
     return one_rope(random, rope, 3.0);
 }
 
-BoundCase string_thrown(Random& random) {
+EstimateCase string_thrown(Random& random) {
     RopeDef rope = string_rope(random, 4);
     rope.pinned = {};
     return one_rope(random, rope, 2.0);
@@ -96,13 +96,13 @@ double tiny_m(Random& random, double most_m) {
     return pick(random, 0, 1) == 0 ? size_m : -size_m;
 }
 
-BoundCase without_drag(BoundCase made) {
+EstimateCase without_drag(EstimateCase made) {
     made.scene.world.drag_1_s = 0.0;
     return made;
 }
 
 /// Two links that share a particle snap almost at once, the first of the string to do so.
-BoundCase near_snaps(Random& random) {
+EstimateCase near_snaps(Random& random) {
     constexpr double kRisesBy = 1e-3;
     for (;;) {
         const int links = pick(random, 2, 4);
@@ -124,7 +124,7 @@ BoundCase near_snaps(Random& random) {
 /// A string between two pins that is its own mirror image, all slack and of equal lengths, or taut and thrown
 /// up. It hangs steeper than at 45 degrees: flatter links would snap in turn until the particle rests,
 /// whichever was first. The truth's points differ by less than the rounding of those of the scene.
-BoundCase equal_snaps(Random& random) {
+EstimateCase equal_snaps(Random& random) {
     const bool is_taut = pick(random, 0, 2) == 0;
     const int half = is_taut ? 1 : pick(random, 1, 2);
     const double width_m = pick_real(random, 0.2, 0.6);
@@ -149,7 +149,7 @@ BoundCase equal_snaps(Random& random) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(half); ++k)
         rope.rest_m.push_back(stretch * falling.distance_m(k, 0.0));
     for (int k = half; k-- > 0;) rope.rest_m.push_back(rope.rest_m[static_cast<std::size_t>(k)]);
-    BoundCase made = without_drag(one_rope(random, rope, 1.5));
+    EstimateCase made = without_drag(one_rope(random, rope, 1.5));
     for (const Vec2& point : rope.points_m) made.start.push_back(point.x);
     for (const Vec2& point : rope.points_m) made.start.push_back(point.y);
     made.start[static_cast<std::size_t>(half)] += ExtendedMotion::Real{1e-16L} * pick_real(random, -1.0, 1.0);
@@ -157,7 +157,7 @@ BoundCase equal_snaps(Random& random) {
 }
 
 /// A link that just reaches its rest length, or just does not, and returns.
-BoundCase grazing_snap(Random& random) {
+EstimateCase grazing_snap(Random& random) {
     constexpr double kDuration = 1.0;
     for (;;) {
         const int links = pick(random, 1, 3);
@@ -195,7 +195,7 @@ RopeDef bungee_rope(Random& random) {
     return rope;
 }
 
-BoundCase bungee(Random& random) {
+EstimateCase bungee(Random& random) {
     RopeDef rope = bungee_rope(random);
     if (pick(random, 0, 1) == 0) add_velocities(random, rope, 2.0);
     return one_rope(random, rope, 2.0);
@@ -214,11 +214,11 @@ RopeDef ring_rope(Random& random) {
     return rope;
 }
 
-BoundCase ring(Random& random) {
+EstimateCase ring(Random& random) {
     return one_rope(random, ring_rope(random), 1.0);
 }
 
-BoundCase elastic_ring(Random& random) {
+EstimateCase elastic_ring(Random& random) {
     RopeDef rope = ring_rope(random);
     rope.material.compliance_1_n = pick_log(random, 1e-5, 1e-2);
     rope.material.is_string = pick(random, 0, 2) == 0;
@@ -226,7 +226,7 @@ BoundCase elastic_ring(Random& random) {
 }
 
 /// A closed polygon with bars from one particle to others, which make it movable, rigid, or overdetermined.
-BoundCase braced(Random& random) {
+EstimateCase braced(Random& random) {
     const RopeDef rope = ring_rope(random);
     const auto count = static_cast<std::uint32_t>(rope.points_m.size());
     NetDef net;
@@ -236,7 +236,7 @@ BoundCase braced(Random& random) {
     for (std::uint32_t i = 2; i + 1 < count; ++i) {
         if (pick(random, 0, 2) != 0) net.bars.push_back({0, i});
     }
-    BoundCase made;
+    EstimateCase made;
     made.scene.nets = {net};
     made.scene.world.duration_s = 1.0;
     add_video(random, made.scene);
@@ -263,7 +263,7 @@ NetDef grid(Random& random) {
 }
 
 /// A net whose cells are parallelograms, on a pin, on a row of pins, or free.
-BoundCase parallelograms(Random& random) {
+EstimateCase parallelograms(Random& random) {
     NetDef net = grid(random);
     const auto is_below = [](const NetBar& bar) { return bar.b != bar.a + 1; };
     const std::size_t columns = std::find_if(net.bars.begin(), net.bars.end(), is_below)->b;
@@ -276,23 +276,23 @@ BoundCase parallelograms(Random& random) {
     const int pins = pick(random, 0, 2);
     if (pins == 0) net.pinned = {};
     for (std::uint32_t i = 1; pins == 2 && i < columns; ++i) net.pinned.push_back(i);
-    BoundCase made;
+    EstimateCase made;
     made.scene.nets = {net};
     made.scene.world.duration_s = 0.2;  // before a cell is in line, where the truth takes tiny steps
     add_video(random, made.scene);
     return made;
 }
 
-BoundCase net(Random& random) {
-    BoundCase made;
+EstimateCase net(Random& random) {
+    EstimateCase made;
     made.scene.nets = {grid(random)};
     made.scene.world.duration_s = 0.5;
     add_video(random, made.scene);
     return made;
 }
 
-BoundCase elastic_net(Random& random) {
-    BoundCase made;
+EstimateCase elastic_net(Random& random) {
+    EstimateCase made;
     NetDef net = grid(random);
     net.material.compliance_1_n = pick_log(random, 1e-4, 1e-2);
     net.material.is_string = pick(random, 0, 2) == 0;
@@ -303,8 +303,9 @@ BoundCase elastic_net(Random& random) {
 }
 
 /// Some of: a rope, a stretching rope, a string or a ring, a bungee.
-BoundCase several(Random& random) {
-    BoundCase made = one_rope(random, crooked_rope(random, pick(random, 2, 8), any_angle(random), 1.0), 1.0);
+EstimateCase several(Random& random) {
+    EstimateCase made =
+        one_rope(random, crooked_rope(random, pick(random, 2, 8), any_angle(random), 1.0), 1.0);
     std::vector<RopeDef>& ropes = made.scene.ropes;
     if (pick(random, 0, 1) == 0) {
         ropes.push_back(crooked_rope(random, pick(random, 1, 4), any_angle(random), 1.0));
@@ -320,7 +321,7 @@ BoundCase several(Random& random) {
 }
 
 /// From micrometres to kilometres, with any gravity and any masses.
-BoundCase units(Random& random) {
+EstimateCase units(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 2, 8), any_angle(random), 1.0);
     const double scale = pick_log(random, 1e-6, 1e4);
     const double gravity_m_s2 = pick_log(random, 1e-2, 1e3);
@@ -329,7 +330,7 @@ BoundCase units(Random& random) {
     for (std::size_t i = 0; i < rope.points_m.size(); ++i)
         rope.mass_kg.push_back(mass_kg * pick_log(random, 0.5, 2.0));
     const double angle = any_angle(random);
-    BoundCase made = one_rope(random, rope, 5.0 * std::sqrt(scale * 9.81 / gravity_m_s2));
+    EstimateCase made = one_rope(random, rope, 5.0 * std::sqrt(scale * 9.81 / gravity_m_s2));
     made.scene.world.gravity_m_s2 = {gravity_m_s2 * std::sin(angle), -gravity_m_s2 * std::cos(angle)};
     made.scene.world.drag_1_s = 0.0;
     const auto rate = static_cast<std::int64_t>(60e3 * std::sqrt(gravity_m_s2 / (9.81 * scale)));
@@ -337,63 +338,63 @@ BoundCase units(Random& random) {
     return made;
 }
 
-BoundCase tiny_frames(Random& random) {
-    BoundCase made = one_rope(random, crooked_rope(random, pick(random, 2, 8), any_angle(random), 1.5),
-                              pick_real(random, 0.5, 6.0));
+EstimateCase tiny_frames(Random& random) {
+    EstimateCase made = one_rope(random, crooked_rope(random, pick(random, 2, 8), any_angle(random), 1.5),
+                                 pick_real(random, 0.5, 6.0));
     made.scene.video.width_px = 2 * pick(random, 1, 16);
     made.scene.video.height_px = 2 * pick(random, 1, 16);
     made.scene.solver = AutoDef{pick_log(random, 1e-3, 50.0)};
     return made;
 }
 
-BoundCase odd_rates(Random& random) {
-    BoundCase made = one_rope(random, crooked_rope(random, pick(random, 2, 8), any_angle(random), 1.5),
-                              pick_real(random, 0.5, 4.0));
+EstimateCase odd_rates(Random& random) {
+    EstimateCase made = one_rope(random, crooked_rope(random, pick(random, 2, 8), any_angle(random), 1.5),
+                                 pick_real(random, 0.5, 4.0));
     made.scene.video.fps = FrameRate(Rational{pick(random, 500, 120'000), pick(random, 900, 1100)});
     return made;
 }
 
-BoundCase much_drag(Random& random) {
+EstimateCase much_drag(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 2, 12), any_angle(random), 1.5);
     add_velocities(random, rope, 3.0);
     if (pick(random, 0, 2) == 0) rope.material.compliance_1_n = pick_log(random, 1e-5, 1e-2);
-    BoundCase made = one_rope(random, rope, 5.0);
+    EstimateCase made = one_rope(random, rope, 5.0);
     made.scene.world.drag_1_s = pick_log(random, 0.3, 30.0);
     return made;
 }
 
 /// Rounded points, as in a file, far from (0, 0).
-BoundCase far_away(Random& random) {
+EstimateCase far_away(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 2, 6), any_angle(random), 1.5);
     rope.origin_m = {pick_log(random, 10.0, 1e8), -pick_log(random, 10.0, 1e8)};
-    BoundCase made = one_rope(random, rope, 3.0);
+    EstimateCase made = one_rope(random, rope, 3.0);
     made.scene.solver = AutoDef{pick_log(random, 1e-7, 1.0)};
     return made;
 }
 
 }  // namespace
 
-std::span<const BoundFamily> other_families() {
-    static const auto families = std::to_array<BoundFamily>({{"string_few", string_few},
-                                                             {"string_many", string_many},
-                                                             {"string_swing", string_swing},
-                                                             {"string_thrown", string_thrown},
-                                                             {"near_snaps", near_snaps},
-                                                             {"equal_snaps", equal_snaps},
-                                                             {"grazing_snap", grazing_snap},
-                                                             {"bungee", bungee},
-                                                             {"ring", ring},
-                                                             {"elastic_ring", elastic_ring},
-                                                             {"braced", braced},
-                                                             {"net", net},
-                                                             {"parallelograms", parallelograms},
-                                                             {"elastic_net", elastic_net},
-                                                             {"several", several},
-                                                             {"units", units},
-                                                             {"tiny_frames", tiny_frames},
-                                                             {"odd_rates", odd_rates},
-                                                             {"much_drag", much_drag},
-                                                             {"far_away", far_away}});
+std::span<const EstimateFamily> other_families() {
+    static const auto families = std::to_array<EstimateFamily>({{"string_few", string_few},
+                                                                {"string_many", string_many},
+                                                                {"string_swing", string_swing},
+                                                                {"string_thrown", string_thrown},
+                                                                {"near_snaps", near_snaps},
+                                                                {"equal_snaps", equal_snaps},
+                                                                {"grazing_snap", grazing_snap},
+                                                                {"bungee", bungee},
+                                                                {"ring", ring},
+                                                                {"elastic_ring", elastic_ring},
+                                                                {"braced", braced},
+                                                                {"net", net},
+                                                                {"parallelograms", parallelograms},
+                                                                {"elastic_net", elastic_net},
+                                                                {"several", several},
+                                                                {"units", units},
+                                                                {"tiny_frames", tiny_frames},
+                                                                {"odd_rates", odd_rates},
+                                                                {"much_drag", much_drag},
+                                                                {"far_away", far_away}});
     return families;
 }
 

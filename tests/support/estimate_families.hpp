@@ -4,27 +4,28 @@
 #include <span>
 #include <string>
 
-#include "support/bound_judge.hpp"
+#include "support/estimate_judge.hpp"
 #include "support/random_system.hpp"
 
 namespace corda::test {
 
 /// Random scenes of one kind.
-struct BoundFamily {
+struct EstimateFamily {
     const char* name;
-    std::function<BoundCase(Random&)> make;
+    std::function<EstimateCase(Random&)> make;
 
     /// Scene number `n`, the same in every run.
-    [[nodiscard]] BoundCase scene(unsigned n) const;
+    [[nodiscard]] EstimateCase scene(unsigned n) const;
 };
 
-/// Families of scenes for which claims of method auto are compared with the truth: single ropes of all kinds.
-[[nodiscard]] std::span<const BoundFamily> rope_families();
+/// Families of scenes for which estimates of method auto are compared with the truth: single ropes of all
+/// kinds.
+[[nodiscard]] std::span<const EstimateFamily> rope_families();
 /// More families: strings, closed ropes, nets, several bodies, and unusual scales, pictures and places.
-[[nodiscard]] std::span<const BoundFamily> other_families();
+[[nodiscard]] std::span<const EstimateFamily> other_families();
 
 /// Masses that differ by up to 1e14, and linkages that pass the line of their bars.
-[[nodiscard]] std::span<const BoundFamily> mass_and_linkage_families();
+[[nodiscard]] std::span<const EstimateFamily> mass_and_linkage_families();
 
 /// A rope of 1 m from (0, 0) in directions around `angle` from straight down, in radians.
 [[nodiscard]] RopeDef crooked_rope(Random& random, int links, double angle, double spread);
@@ -34,12 +35,12 @@ void throw_it(Random& random, RopeDef& rope);
 [[nodiscard]] double any_angle(Random& random);
 [[nodiscard]] double pick_log(Random& random, double least, double most);
 /// A scene of that rope with a random size of picture, rate, tolerance and drag.
-[[nodiscard]] BoundCase one_rope(Random& random, RopeDef rope, double duration_s);
+[[nodiscard]] EstimateCase one_rope(Random& random, RopeDef rope, double duration_s);
 /// Sets size (16 to 4K pixels), frame rate, tolerance and drag at random.
 void add_video(Random& random, Scene& scene);
 
 /// A straight rope with rounded points, as in a scene file.
-[[nodiscard]] BoundCase straight_rope(int links, double length_m, double angle_deg,
-                                      const std::string& more = "");
+[[nodiscard]] EstimateCase straight_rope(int links, double length_m, double angle_deg,
+                                         const std::string& more = "");
 
 }  // namespace corda::test

@@ -1,4 +1,4 @@
-#include "support/bound_judge.hpp"
+#include "support/estimate_judge.hpp"
 
 #include <algorithm>
 #include <array>
@@ -22,11 +22,11 @@ class Watch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-std::string why_no_bound(const Plan& plan) {
+std::string why_no_estimate(const Plan& plan) {
     for (const BodyPlan& body : plan.bodies) {
         if (body.reason == PlanReason::kDependent) return "bars depend on each other";
     }
-    return "none claimed";
+    return "none given";
 }
 
 /// The largest error of a printed position, in m.
@@ -45,7 +45,7 @@ double error_m(const State& state, Vec2 origin_m, const Truth& truth) {
 
 /// True if the truth with other steps, and so with other rounding, differs far less than the error, and if
 /// its bars keep their lengths as well.
-bool is_sure(Film& film, const BoundCase& given, const Verdict& verdict) {
+bool is_sure(Film& film, const EstimateCase& given, const Verdict& verdict) {
     if (given.truth) return true;
     ExtendedMotion truth(film.system(), given.scene.world, given.start);
     ExtendedMotion other(film.system(), given.scene.world, given.start);
@@ -57,10 +57,10 @@ bool is_sure(Film& film, const BoundCase& given, const Verdict& verdict) {
     Real largest_m = truth.length_error_m();
     for (std::size_t i = 0; i < film.system().particle_count(); ++i)
         largest_m = std::max(largest_m, std::hypot(truth.x_m(i) - other.x_m(i), truth.y_m(i) - other.y_m(i)));
-    return largest_m <= 0.1 * *verdict.ratio * verdict.bound_m;
+    return largest_m <= 0.1 * *verdict.ratio * verdict.estimate_m;
 }
 
-void compare(Film& film, const BoundCase& given, bool beyond, Verdict& verdict) {
+void compare(Film& film, const EstimateCase& given, bool beyond, Verdict& verdict) {
     ExtendedMotion motion(film.system(), given.scene.world, given.start);
     verdict.ratio = 0.0;
     const double until_s = verdict.horizon_s.value_or(given.scene.world.duration_s);
@@ -73,7 +73,7 @@ void compare(Film& film, const BoundCase& given, bool beyond, Verdict& verdict) 
         const auto truth = [&](std::size_t i) {
             return given.truth ? given.truth(film.time_s(k), i) : std::array{motion.x_m(i), motion.y_m(i)};
         };
-        const double ratio = error_m(film.state(k), film.system().origin_m, truth) / verdict.bound_m;
+        const double ratio = error_m(film.state(k), film.system().origin_m, truth) / verdict.estimate_m;
         if (beyond && ratio > 1.0) {
             verdict.passes_s = film.time_s(k);
             beyond = false;
@@ -86,7 +86,7 @@ void compare(Film& film, const BoundCase& given, bool beyond, Verdict& verdict) 
 
 }  // namespace
 
-Verdict judge_bound(const BoundCase& given, bool beyond) {
+Verdict judge_estimate(const EstimateCase& given, bool beyond) {
     Verdict verdict;
     const Watch watch;
     try {
@@ -94,8 +94,8 @@ Verdict judge_bound(const BoundCase& given, bool beyond) {
         const Plan& plan = film.plan();
         verdict.plan_s = watch.seconds();
         verdict.horizon_s = plan.horizon_s;
-        if (plan.error_bound_m) {
-            verdict.bound_m = *plan.error_bound_m;
+        if (plan.error_estimate_m) {
+            verdict.estimate_m = *plan.error_estimate_m;
             compare(film, given, beyond, verdict);
             if (verdict.ratio > 1.0 && !is_sure(film, given, verdict)) {
                 verdict.ratio.reset();
@@ -103,11 +103,11 @@ Verdict judge_bound(const BoundCase& given, bool beyond) {
             }
             verdict.truth_s = watch.seconds() - verdict.plan_s;
         } else {
-            verdict.why_no_bound = why_no_bound(plan);
+            verdict.why_no_estimate = why_no_estimate(plan);
         }
     } catch (const Error& error) {
         const std::string message = error.what();
-        verdict.why_no_bound = "refused: " + message.substr(0, message.find(';'));
+        verdict.why_no_estimate = "refused: " + message.substr(0, message.find(';'));
     }
     return verdict;
 }

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "support/bound_families.hpp"
+#include "support/estimate_families.hpp"
 
 namespace corda::test {
 namespace {
@@ -14,7 +14,7 @@ using Real = ExtendedMotion::Real;
 
 /// Masses that differ by up to 1e14 in a straight rope at rest, which comes taut when it has fallen, and by
 /// up to 1e8 in a crooked one.
-BoundCase mass_mix(Random& random) {
+EstimateCase mass_mix(Random& random) {
     const bool is_straight = pick(random, 0, 1) == 0;
     RopeDef rope = crooked_rope(random, pick(random, 2, 5), any_angle(random),
                                 is_straight ? 0.0 : pick_log(random, 1e-6, 1.0));
@@ -25,7 +25,7 @@ BoundCase mass_mix(Random& random) {
 }
 
 /// Masses that differ by up to 1e14 in a thrown rope without pins.
-BoundCase mass_mix_free(Random& random) {
+EstimateCase mass_mix_free(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 1, 5), any_angle(random),
                                 pick(random, 0, 1) == 0 ? 0.0 : pick_log(random, 1e-6, 1.0));
     const double spread = pick_log(random, 1e2, 1e7);
@@ -55,13 +55,13 @@ Real fall_m(const WorldDef& world, double acceleration_m_s2, double speed_m_s, d
 
 /// A closed rope of four equal links and masses, thrown: its half angle and its direction change uniformly,
 /// as r^2 is the same over all of its particles in every shape. It is often flat at a frame.
-BoundCase rhombus(Random& random) {
+EstimateCase rhombus(Random& random) {
     const double side_m = pick_log(random, 0.3, 3.0);
     const double half = pick_real(random, 0.2, 1.3);
     const double turned = any_angle(random);
     const double turn_1_s = pick(random, 0, 1) == 0 ? 0.0 : pick_real(random, -2.0, 2.0);
     const Vec2 thrown_m_s{pick_real(random, -1.0, 1.0), pick_real(random, -1.0, 1.0)};
-    BoundCase made = one_rope(random, RopeDef{}, 3.0);
+    EstimateCase made = one_rope(random, RopeDef{}, 3.0);
     WorldDef& world = made.scene.world;
     if (pick(random, 0, 1) == 0) world.gravity_m_s2 = {};
     const double frame_s = made.scene.video.fps.interval_s() * pick(random, 1, 30);
@@ -141,7 +141,7 @@ class PendulumTruth {
 
 /// Two equal cranks on pins, joined by a bar as long as the pins are apart: each of its particles is a
 /// pendulum. Many pass the line of all bars, where a second motion branches off.
-BoundCase parallelogram(Random& random) {
+EstimateCase parallelogram(Random& random) {
     const double crank_m = pick_log(random, 0.3, 2.0);
     const double base_m = crank_m * pick_log(random, 0.2, 4.0);
     const double along = any_angle(random);
@@ -154,7 +154,7 @@ BoundCase parallelogram(Random& random) {
     rope.pinned = {0, 3};
     rope.velocity_m_s = {{}, turn_1_s * left_of(crank), turn_1_s * left_of(crank), {}};
     for (int i = 0; i < 4; ++i) rope.mass_kg.push_back(pick_log(random, 0.1, 10.0));
-    BoundCase made = one_rope(random, rope, 3.0);
+    EstimateCase made = one_rope(random, rope, 3.0);
     if (pick(random, 0, 1) == 0) {  // as a graph, which another method moves
         NetDef net;
         net.points_m = rope.points_m;
@@ -181,11 +181,11 @@ BoundCase parallelogram(Random& random) {
 
 }  // namespace
 
-std::span<const BoundFamily> mass_and_linkage_families() {
-    static const auto families = std::to_array<BoundFamily>({{"mass_mix", mass_mix},
-                                                             {"mass_mix_free", mass_mix_free},
-                                                             {"rhombus", rhombus},
-                                                             {"parallelogram", parallelogram}});
+std::span<const EstimateFamily> mass_and_linkage_families() {
+    static const auto families = std::to_array<EstimateFamily>({{"mass_mix", mass_mix},
+                                                                {"mass_mix_free", mass_mix_free},
+                                                                {"rhombus", rhombus},
+                                                                {"parallelogram", parallelogram}});
     return families;
 }
 

@@ -13,7 +13,7 @@ namespace corda::test {
 
 /// A scene, and its start in extended precision (x, then y, in m) if the scene's points are rounded from
 /// other numbers.
-struct BoundCase {
+struct EstimateCase {
     Scene scene;
     std::vector<ExtendedMotion::Real> start = {};
     /// Position of a particle at a time, relative to the scene's origin, in closed form; empty:
@@ -21,25 +21,25 @@ struct BoundCase {
     std::function<std::array<ExtendedMotion::Real, 2>(double time_s, std::size_t particle)> truth = {};
 };
 
-/// The verdict on a claim of method auto.
+/// The verdict on an estimate of method auto.
 struct Verdict {
     std::optional<double>
-        ratio;                   ///< the largest of error / bound; std::nullopt if there is none, or no truth
-    std::string why_no_bound;    ///< empty if there is a bound
-    std::string why_not_judged;  ///< empty if the truth reached the end of the claim
+        ratio;  ///< the largest of error / estimate; std::nullopt if there is none, or no truth
+    std::string why_no_estimate;  ///< empty if there is an estimate
+    std::string why_not_judged;   ///< empty if the truth reached the horizon or the end
     std::optional<double> horizon_s;
-    /// The first frame time at which the error is larger than the bound, if judge_bound() looks for it and
-    /// the scene does not end before.
+    /// The first frame time at which the error is larger than the estimate, if judge_estimate() looks for it
+    /// and the scene does not end before.
     std::optional<double> passes_s;
-    double bound_m = 0.0;
+    double estimate_m = 0.0;
     double worst_s = 0.0;  ///< when the ratio is largest
     double plan_s = 0.0;   ///< duration of planning
     double truth_s = 0.0;  ///< duration of computing the truth
 };
 
-/// Compares the bound that method auto claims with the truth, in world coordinates at all frame times up
+/// Compares the error estimate of method auto with the truth, in world coordinates at all frame times up
 /// to the horizon. If the truth ends early, the times before its end count. `beyond`: also looks for
 /// Verdict::passes_s, at the frame times after the horizon as well.
-[[nodiscard]] Verdict judge_bound(const BoundCase& given, bool beyond = false);
+[[nodiscard]] Verdict judge_estimate(const EstimateCase& given, bool beyond = false);
 
 }  // namespace corda::test

@@ -1,7 +1,7 @@
-// Claims of method auto on random scenes of many families, held against ExtendedMotion: a claim is false if a
-// position at a frame time under the horizon is farther from the truth than error_bound_m. Some scenes per
-// family as a rule; CORDA_BOUND_SCENES=1000 runs so many of each, CORDA_BOUND_SCENES=40:60 those from number
-// 40 to 59, and prints a row of a table for each family.
+// Error estimates of method auto on random scenes of many families, held against ExtendedMotion: one is false
+// if a position at a frame time under the horizon is farther from the truth than error_estimate_m. Some
+// scenes per family as a rule; CORDA_ESTIMATE_SCENES=1000 runs so many of each, CORDA_ESTIMATE_SCENES=40:60
+// those from number 40 to 59, and prints a row of a table for each family.
 
 #include <gtest/gtest.h>
 
@@ -14,13 +14,13 @@
 #include <string_view>
 #include <vector>
 
-#include "support/bound_families.hpp"
+#include "support/estimate_families.hpp"
 
 namespace corda {
 namespace {
 
-using test::BoundCase;
-using test::BoundFamily;
+using test::EstimateCase;
+using test::EstimateFamily;
 using test::Verdict;
 
 /// The numbers of scenes to run.
@@ -31,14 +31,14 @@ struct Range {
 
 Range wanted_scenes() {
     constexpr unsigned kScenes = 3;
-    const char* const wanted = std::getenv("CORDA_BOUND_SCENES");
+    const char* const wanted = std::getenv("CORDA_ESTIMATE_SCENES");
     if (wanted == nullptr) return {0, kScenes};
     Range range;
     if (std::sscanf(wanted, "%u:%u", &range.first, &range.end) == 2) return range;
     return {0, range.first};
 }
 
-/// Results of the claims of a family.
+/// Results of a family.
 class Row {
   public:
     void add(const Verdict& verdict) {
@@ -47,7 +47,7 @@ class Row {
         plan_s_ += verdict.plan_s;
         truth_s_ += verdict.truth_s;
         if (verdict.ratio) ratios_.push_back(*verdict.ratio);
-        if (!verdict.why_no_bound.empty()) ++no_bound_[verdict.why_no_bound];
+        if (!verdict.why_no_estimate.empty()) ++no_estimate_[verdict.why_no_estimate];
         if (!verdict.why_not_judged.empty()) ++not_judged_[verdict.why_not_judged];
     }
     [[nodiscard]] bool is_empty() const { return ratios_.empty(); }
@@ -58,8 +58,8 @@ class Row {
             std::count_if(ratios_.begin(), ratios_.end(), [](double r) { return !(r <= 1.0); });
         std::printf("| %s | %d | %d | %.3g | %.3g | %d | %s | %s | %.0f + %.0f s |\n", family, scenes_,
                     static_cast<int>(failed), ratios_.empty() ? 0.0 : ratios_.back(),
-                    ratios_.empty() ? 0.0 : ratios_[ratios_.size() / 2], horizons_, text(no_bound_).c_str(),
-                    text(not_judged_).c_str(), plan_s_, truth_s_);
+                    ratios_.empty() ? 0.0 : ratios_[ratios_.size() / 2], horizons_,
+                    text(no_estimate_).c_str(), text(not_judged_).c_str(), plan_s_, truth_s_);
         std::fflush(stdout);
     }
 
@@ -77,24 +77,25 @@ class Row {
     double plan_s_ = 0.0;
     double truth_s_ = 0.0;
     std::vector<double> ratios_;
-    Counts no_bound_;
+    Counts no_estimate_;
     Counts not_judged_;
 };
 
 void expect_true(const Verdict& verdict, const std::string& scene) {
     if (!verdict.ratio) return;
-    EXPECT_LE(*verdict.ratio, 1.0) << scene << " at " << verdict.worst_s << " s, bound " << verdict.bound_m
-                                   << " m, horizon " << verdict.horizon_s.value_or(0.0) << " s";
+    EXPECT_LE(*verdict.ratio, 1.0) << scene << " at " << verdict.worst_s << " s, estimate "
+                                   << verdict.estimate_m << " m, horizon " << verdict.horizon_s.value_or(0.0)
+                                   << " s";
 }
 
-class AutoBounds : public testing::TestWithParam<BoundFamily> {};
+class AutoEstimates : public testing::TestWithParam<EstimateFamily> {};
 
-TEST_P(AutoBounds, AreTrueOfRandomScenes) {
-    const BoundFamily& family = GetParam();
+TEST_P(AutoEstimates, AreTrueOfRandomScenes) {
+    const EstimateFamily& family = GetParam();
     const Range range = wanted_scenes();
     Row row;
     for (unsigned n = range.first; n < range.end; ++n) {
-        const Verdict verdict = test::judge_bound(family.scene(n));
+        const Verdict verdict = test::judge_estimate(family.scene(n));
         expect_true(verdict, "scene " + std::to_string(n));
         row.add(verdict);
     }
@@ -104,12 +105,12 @@ TEST_P(AutoBounds, AreTrueOfRandomScenes) {
 
 const auto kName = [](const auto& param) { return std::string(param.param.name); };
 
-INSTANTIATE_TEST_SUITE_P(Of, AutoBounds, testing::ValuesIn(test::rope_families()), kName);
-INSTANTIATE_TEST_SUITE_P(OfOther, AutoBounds, testing::ValuesIn(test::other_families()), kName);
-INSTANTIATE_TEST_SUITE_P(OfMassesAndLinkages, AutoBounds,
+INSTANTIATE_TEST_SUITE_P(Of, AutoEstimates, testing::ValuesIn(test::rope_families()), kName);
+INSTANTIATE_TEST_SUITE_P(OfOther, AutoEstimates, testing::ValuesIn(test::other_families()), kName);
+INSTANTIATE_TEST_SUITE_P(OfMassesAndLinkages, AutoEstimates,
                          testing::ValuesIn(test::mass_and_linkage_families()), kName);
 
-/// A scene of which a claim was false once.
+/// A scene of which an estimate was false once.
 struct Fixed {
     const char* name;
     int links = 0;  ///< of a straight rope with a start that its points are rounded from; 0: none
@@ -117,23 +118,23 @@ struct Fixed {
     double angle_deg = 0.0;
 };
 
-class AutoBoundsFixed : public testing::TestWithParam<Fixed> {};
+class AutoEstimatesFixed : public testing::TestWithParam<Fixed> {};
 
-TEST_P(AutoBoundsFixed, IsTrue) {
+TEST_P(AutoEstimatesFixed, IsTrue) {
     const Fixed& fixed = GetParam();
-    BoundCase given{load_scene(std::string(CORDA_TEST_DATA) + "/bounds/" + fixed.name + ".toml")};
+    EstimateCase given{load_scene(std::string(CORDA_TEST_DATA) + "/estimates/" + fixed.name + ".toml")};
     if (fixed.links > 0)
         given.start = test::straight_rope(fixed.links, fixed.length_m, fixed.angle_deg).start;
-    const Verdict verdict = test::judge_bound(given);
-    EXPECT_EQ(verdict.why_no_bound + verdict.why_not_judged, "");
+    const Verdict verdict = test::judge_estimate(given);
+    EXPECT_EQ(verdict.why_no_estimate + verdict.why_not_judged, "");
     ASSERT_TRUE(verdict.ratio);
     expect_true(verdict, fixed.name);
-    std::printf("%s: %.3g of %.3g m, %.1f + %.1f s\n", fixed.name, *verdict.ratio, verdict.bound_m,
+    std::printf("%s: %.3g of %.3g m, %.1f + %.1f s\n", fixed.name, *verdict.ratio, verdict.estimate_m,
                 verdict.plan_s, verdict.truth_s);
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Of, AutoBoundsFixed,
+    Of, AutoEstimatesFixed,
     testing::Values(Fixed{"false_01_hang15_150", 15, 1.0, 150.0}, Fixed{"false_03_hang8_90", 8, 1.0, 90.0},
                     Fixed{"false_10_beam", 2, 0.1, 2.0}, Fixed{"false_12_beam60", 2, 2.0, 10.0},
                     Fixed{"far_origin"}, Fixed{"gen_chaosmany38"}, Fixed{"gen_elastic14"},
@@ -141,24 +142,24 @@ INSTANTIATE_TEST_SUITE_P(
                     Fixed{"gen_payload20"}, Fixed{"gen_stringhard34"}, Fixed{"gen_units46"}),
     kName);
 
-/// A random scene of which a claim was false once.
+/// A random scene of which an estimate was false once.
 struct Found {
     const char* family;
     unsigned number;
 };
 
-class AutoBoundsFound : public testing::TestWithParam<Found> {};
+class AutoEstimatesFound : public testing::TestWithParam<Found> {};
 
-TEST_P(AutoBoundsFound, IsTrue) {
+TEST_P(AutoEstimatesFound, IsTrue) {
     const Found& found = GetParam();
     bool is_known = false;
     for (const auto families :
          {test::rope_families(), test::other_families(), test::mass_and_linkage_families()}) {
-        for (const BoundFamily& family : families) {
+        for (const EstimateFamily& family : families) {
             if (family.name != std::string_view(found.family)) continue;
             is_known = true;
-            const Verdict verdict = test::judge_bound(family.scene(found.number));
-            EXPECT_EQ(verdict.why_no_bound + verdict.why_not_judged, "");
+            const Verdict verdict = test::judge_estimate(family.scene(found.number));
+            EXPECT_EQ(verdict.why_no_estimate + verdict.why_not_judged, "");
             expect_true(verdict, "scene " + std::to_string(found.number));
         }
     }
@@ -168,7 +169,7 @@ TEST_P(AutoBoundsFound, IsTrue) {
 // A link that a snap sends inwards slowly and that does not come back; steps that a run and its check divided
 // alike; a link that turns back right after a step; checks that shared the rounding of snaps; rounding that a
 // ratio of masses of 7e4 magnifies.
-INSTANTIATE_TEST_SUITE_P(Of, AutoBoundsFound,
+INSTANTIATE_TEST_SUITE_P(Of, AutoEstimatesFound,
                          testing::Values(Found{"string_many", 97}, Found{"braced", 167},
                                          Found{"grazing_snap", 1783}, Found{"string_many", 1037},
                                          Found{"mass_mix", 1018}),
