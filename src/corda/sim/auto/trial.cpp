@@ -138,15 +138,7 @@ double hidden_m(const System& system, const Trial& trial) {
 bool is_far_from_rounding(const System& system, const MethodDef& run) {
     constexpr double kNear = 2e-9;
     const auto* exact = std::get_if<ExactDef>(&run);
-    if (exact == nullptr) return false;
-    double lightest_1_kg = 0.0;
-    double heaviest_1_kg = HUGE_VAL;
-    for (const double inverse_1_kg : system.inverse_mass_1_kg) {
-        if (inverse_1_kg == 0.0) continue;  // pinned
-        lightest_1_kg = std::max(lightest_1_kg, inverse_1_kg);
-        heaviest_1_kg = std::min(heaviest_1_kg, inverse_1_kg);
-    }
-    return exact->tolerance > kNear * std::max(1.0, lightest_1_kg / heaviest_1_kg);
+    return exact != nullptr && exact->tolerance > kNear * mass_ratio(system, system.bodies.front());
 }
 
 /// Of positions in the scene's coordinates, as files give them; and of the start and the lengths of bars,
