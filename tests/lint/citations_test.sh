@@ -6,7 +6,7 @@ root=$(mktemp -d)
 trap 'rm -r "$root"' EXIT
 mkdir -p "$root"/{src/corda/sim,tests,examples,shaders}
 printf '# Corda\n\nSee [R1](src/corda/sim/README.md#r1-pendulum) and src/corda/sim/a.hpp.\n' >"$root/README.md"
-printf '## 5. Hard cases\n\nIn section 5, R1, [up](../../README.md).\n\n### R1 Pendulum\n' >"$root/src/corda/sim/README.md"
+printf '## 5. Hard cases\n\nIn section 5, R1, [up](../../../README.md).\n\n### R1 Pendulum\n' >"$root/src/corda/sim/README.md"
 
 # expect RESULT TEXT: fails unless the lint has this result for a source with this text.
 expect() {
