@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "support/command.hpp"
 #include "support/probe.hpp"
 
@@ -56,21 +58,6 @@ TEST_F(ExitCodes, HelpPrintsThemAll) {
     }
 }
 
-TEST_F(ExitCodes, TwoForUsage) {
-    EXPECT_EQ(run_corda({}).exit_code, 2);
-    EXPECT_EQ(run_corda({"rendr"}).exit_code, 2);
-    EXPECT_EQ(run_corda({"render", scene_}).exit_code, 2);
-    EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--no-such-flag"}).exit_code, 2);
-    EXPECT_EQ(run_corda({"render", scene_, "-o", folder_.file("out.txt")}).exit_code, 2);
-    EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--size", "64by64"}).exit_code, 2);
-    EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--frames", "3:2"}).exit_code, 2);
-    EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--backend", "magic"}).exit_code, 2);
-    EXPECT_EQ(run_corda({"still", scene_, "-o", folder_.path()}).exit_code, 2);
-    EXPECT_EQ(run_corda({"still", scene_, "--at", "99", "-o", folder_.path()}).exit_code, 2);
-    EXPECT_EQ(run_corda({"compare", scene_}).exit_code, 2);
-    EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--set", "nonsense"}).exit_code, 2);
-}
-
 TEST_F(ExitCodes, SevenForEmptyPicturesWithFailEmpty) {
     const std::vector<std::string> away{"--set", "camera.center=[100, 0]", "--set", "camera.height=2"};
     const auto run = [&](std::vector<std::string> arguments, const std::vector<std::string>& more) {
@@ -100,148 +87,14 @@ TEST_F(ExitCodes, SevenForEmptyPicturesWithFailEmpty) {
                 HasSubstr("change center and height of the keys of camera.path"));
 }
 
-TEST_F(ExitCodes, TwoForAnInvalidNumber) {
-    struct Option {
-        std::vector<std::string> arguments;
-        const char* name;
-        const char* range;
-    };
-    const std::vector<Option> options{
-        {{"compare", scene_, scene_}, "--max", "0 .. 255"},
-        {{"compare", scene_, scene_}, "--mean", "0 .. 255"},
-        {{"compare", scene_, scene_}, "--share", "0 .. 1"},
-        {{"still", scene_, "--at", "0", "-o", folder_.file("a.png")}, "--ppi", "1 .. 10000"},
-        {{"still", scene_, "-o", folder_.file("a.png")}, "--at", "0 .. 0.2 s"},
-        {{"still", scene_, "--at", "0", "-o", folder_.file("a.png")}, "--duration", "> 0"},
-        {{"render", scene_, "-o", video_}, "--duration", "> 0"},
-        {{"render", scene_, "-o", video_}, "--fps", "0.001 .. 100000"},
-        {{"render", scene_, "-o", video_}, "--crf", "1 .. 63"},
-        {{"render", scene_, "-o", video_}, "--threads", "1 .. 64"},
-        {{"simulate", scene_}, "--duration", "> 0"},
-        {{"report", scene_, "-o", folder_.file("report")}, "--at", "0 .. 0.2 s"},
-        {{"plan", scene_}, "--fps", "0.001 .. 100000"},
-    };
-    for (const Option& option : options) {
-        for (const char* value : {"nan", "-inf", "INF", "1e999"}) {
-            auto arguments = option.arguments;
-            arguments.insert(arguments.end(), {option.name, value});
-            const auto result = run_corda(arguments);
-            EXPECT_EQ(result.exit_code, 2) << option.name << ' ' << value << result.err;
-            EXPECT_THAT(result.err, HasSubstr(option.name));
-            EXPECT_THAT(result.err, HasSubstr(option.range));
-        }
-    }
-    EXPECT_THAT(run_corda({"compare", scene_, scene_, "--max", "nan"}).err,
-                HasSubstr("--max: \"nan\" is not a number within 0 .. 255"));
-    EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});
-}
-
-TEST_F(ExitCodes, TwoForAnInvalidOptionValueAndThreeForAnInvalidSceneValue) {
-    const std::vector<std::pair<const char*, const char*>> options{
-        {"--duration", "abc"}, {"--duration", "nan"}, {"--duration", "0"},    {"--duration", "1e99"},
-        {"--crf", "0"},        {"--crf", "52"},       {"--crf", "x"},         {"--size", "0x10"},
-        {"--size", "axb"},     {"--size", "65x64"},   {"--size", "64x99999"}, {"--preset", "fastest"},
-        {"--preset", "5"},     {"--fps", "0"},        {"--fps", "x"},         {"--threads", "99"},
-        {"--jobs", "-1"},      {"--codec", "x"},      {"--codec", "ffv1"},    {"--pix", "5"}};
-    for (const auto& [name, value] : options) {
-        const auto result = run_corda({"render", scene_, "-o", video_, "--dry-run", name, value});
-        EXPECT_EQ(result.exit_code, 2) << name << ' ' << value << result.err;
-    }
-    for (const char* const setting :
-         {"video.crf=0", "world.duration=abc", "video.preset=fastest", "video.no=1"})
-        EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--dry-run", "--set", setting}).exit_code, 3);
+TEST_F(ExitCodes, TwoForAnInvalidOptionAndThreeForAnInvalidScene) {
+    EXPECT_EQ(run_corda({}).exit_code, 2);
     // A scene that is invalid even without the option is an invalid scene; it may come from a pipe.
     EXPECT_EQ(run_corda({"simulate", scene_, "--duration", "0", "--set", "world.drag=-1"}).exit_code, 3);
     const std::string from_pipe = "cat " + scene_ + " | " + test::quoted(CORDA_PROGRAM) + " simulate - ";
     EXPECT_EQ(run_shell(from_pipe + "--duration abc").exit_code, 2);
     EXPECT_EQ(run_shell(from_pipe + "--set world.duration=abc").exit_code, 3);
     EXPECT_EQ(run_shell(from_pipe).exit_code, 0);
-}
-
-TEST_F(ExitCodes, TwoForAnEmptyValue) {
-    const std::vector<std::vector<std::string>> commands{
-        {"render", "", "-o", video_},
-        {"render", scene_, "-o", ""},
-        {"render", scene_, "-o", video_, "--set", ""},
-        {"render", scene_, "-o", video_, "--fps", ""},
-        {"render", scene_, "-o", video_, "--frames", ""},
-        {"render", scene_, "-o", video_, "--size", ""},
-        {"render", scene_, "-o", video_, "--backend", ""},
-        {"still", scene_, "--at", "", "-o", folder_.path()},
-        {"still", scene_, "--frame", "", "-o", folder_.path()},
-        {"still", scene_, "--at", "0", "-o", ""},
-        {"simulate", scene_, "-o", ""},
-        {"compare", "", scene_},
-        {"compare", scene_, scene_, "--max", ""},
-        {"compare", scene_, scene_, "--diff", ""},
-        {"plan", ""},
-        {"report", "", "-o", folder_.file("report")},
-        {"report", scene_, "-o", folder_.file("report"), "--at", ""},
-        {"study", "", "-o", folder_.file("report")},
-        {"study", "-o", ""},
-        {"study", "-o", folder_.file("report"), "--chapter", ""},
-        {"help", ""}};
-    for (const auto& command : commands) {
-        const auto result = run_corda(command);
-        EXPECT_EQ(result.exit_code, 2) << testing::PrintToString(command);
-        EXPECT_THAT(result.err, testing::AnyOf(HasSubstr("is empty"), HasSubstr("\"\"")))
-            << testing::PrintToString(command);
-    }
-    EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});
-    EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--dry-run"}, "CORDA_BACKEND=").exit_code, 0);
-}
-
-TEST_F(ExitCodes, TwoForAnUnsupportedExtension) {
-    for (const char* const name : {"x.eps", "x.jpg", "-"}) {
-        const std::string output = *name == '-' ? name : folder_.file(name);
-        const auto result = run_corda({"still", scene_, "--at", "0", "-o", output});
-        EXPECT_EQ(result.exit_code, 2) << name;
-        EXPECT_THAT(result.err, HasSubstr(".png")) << name;
-    }
-    const auto result = run_corda({"simulate", scene_, "-o", folder_.file("x.npy")});
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(result.err, HasSubstr(".csv"));
-    EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});
-    // The advice in the messages works.
-    EXPECT_EQ(run_corda({"still", scene_, "--at", "0", "-o", folder_.file("dotted.v2/")}).exit_code, 0);
-    EXPECT_EQ(run_corda({"simulate", scene_, "-o", "/dev/null"}).exit_code, 0);
-}
-
-TEST_F(ExitCodes, TwoForAFrameBeyondTheVideo) {
-    // 0.2 s at 30 per second: frames 0 .. 5; the motion ends at frame time 6.
-    EXPECT_EQ(run_corda({"still", scene_, "--frame", "5", "-o", folder_.file("a.png")}).exit_code, 0);
-    const auto result = run_corda({"still", scene_, "--frame", "6", "-o", folder_.file("b.png")});
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(result.err, HasSubstr("0 to 5"));
-    for (const char* const range : {"4:7", "3:3", "5:4", "-1:2", "6:", "1:2:3", "0,x", "1.5", ":-1"}) {
-        const auto refused = run_corda({"still", scene_, "--frame", range, "-o", folder_.path()});
-        EXPECT_EQ(refused.exit_code, 2) << range;
-        EXPECT_THAT(refused.err, HasSubstr("--frame")) << range;
-    }
-}
-
-TEST_F(ExitCodes, TwoForTooManyPicturesInOneFolder) {
-    const auto result = run_corda({"still", scene_, "--duration", "10000", "--frame", ":100001", "-o",
-                                   folder_.file("many"), "--dry-run"});
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(result.err, HasSubstr("corda render"));
-}
-
-TEST_F(ExitCodes, TwoForAnUnknownCommandNamingTheNearest) {
-    for (const auto& [command, remedy] : {std::pair{"rendr", "did you mean render?"},
-                                          {"foo", "known are render, still, strobe, sheet, simulate"}}) {
-        const auto result = run_corda({command, "--help"});
-        EXPECT_EQ(result.exit_code, 2);
-        EXPECT_THAT(result.err, HasSubstr("corda: error: there is no command"));
-        EXPECT_THAT(result.err, HasSubstr(remedy));
-    }
-}
-
-TEST_F(ExitCodes, TwoForAnUnknownOptionNamingTheNearest) {
-    const auto result = run_corda({"render", scene_, "--siz", "64x64"});
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_EQ(result.err, "corda: error: unknown option --siz; did you mean --size?\n");
-    EXPECT_THAT(run_corda({"render", scene_, "--fsp=3"}).err, HasSubstr("--fsp; did you mean --fps?"));
 }
 
 TEST_F(ExitCodes, AreTheSameIfStderrIsFull) {
@@ -252,24 +105,6 @@ TEST_F(ExitCodes, AreTheSameIfStderrIsFull) {
             run_shell(program + " render -v --force " + scene_ + " -o " + video_ + " " + stderr_is).exit_code,
             0);
     }
-}
-
-TEST_F(ExitCodes, ThreeFromPlanToo) {
-    const std::string taut = folder_.write("taut.toml",
-                                           "schema = 1\n[[rope]]\npoints = [[0, 0], [1, 0], [2, 0]]\n"
-                                           "pinned = [0, 2]\n");
-    for (const char* const method : {"auto", "rattle", "exact"}) {
-        const auto result = run_corda({"plan", taut, "--set", std::string("solver.method=") + method});
-        EXPECT_EQ(result.exit_code, 3) << method;
-        EXPECT_THAT(result.err, HasSubstr("taut.toml: ")) << method;
-    }
-}
-
-TEST_F(ExitCodes, TwoForAnOddVideoSizeNamingTheEvenOnes) {
-    const auto result = run_corda({"render", scene_, "-o", video_, "--size", "65x64"});
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(result.err, HasSubstr("64"));
-    EXPECT_THAT(result.err, HasSubstr("66"));
 }
 
 TEST_F(ExitCodes, ThreeForAnInvalidScene) {
@@ -284,12 +119,8 @@ TEST_F(ExitCodes, ThreeForAnInvalidScene) {
 }
 
 TEST_F(ExitCodes, FourWithoutUsableGl) {
-    const auto result = run_corda({"render", scene_, "-o", video_, "--backend", "device:63"});
-    EXPECT_EQ(result.exit_code, 4);
-    EXPECT_THAT(result.err, HasSubstr("no such EGL device"));
-    EXPECT_EQ(
-        run_corda({"still", scene_, "--at", "0", "-o", folder_.path()}, "CORDA_BACKEND=device:63").exit_code,
-        4);
+    const std::vector<std::string> still{"still", scene_, "--at", "0", "-o", folder_.path()};
+    EXPECT_EQ(run_corda(still, "CORDA_BACKEND=device:63").exit_code, 4);
 }
 
 TEST_F(ExitCodes, FiveForAnEncoderThatFails) {
@@ -297,12 +128,6 @@ TEST_F(ExitCodes, FiveForAnEncoderThatFails) {
     EXPECT_EQ(result.exit_code, 5) << result.err;
     EXPECT_THAT(result.err, HasSubstr("libx264"));
     EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});
-}
-
-TEST_F(ExitCodes, SixForInputAndOutput) {
-    EXPECT_EQ(run_corda({"render", folder_.file("none.toml"), "-o", video_}).exit_code, 6);
-    EXPECT_EQ(run_corda({"render", scene_, "-o", folder_.file("no/such/folder/out.mp4")}).exit_code, 6);
-    EXPECT_EQ(run_corda({"compare", folder_.file("a.png"), folder_.file("b.png")}).exit_code, 6);
 }
 
 TEST_F(ExitCodes, SixWhenNoMoreCanBeWritten) {
@@ -332,12 +157,9 @@ TEST_F(ExitCodes, SixWhenNoMoreCanBeWritten) {
     EXPECT_EQ(csv.exit_code, 6) << csv.err;
 }
 
-TEST_F(ExitCodes, SixForAFullDeviceAndAnUnwritableFolder) {
+TEST_F(ExitCodes, SixForAFullDevice) {
     EXPECT_EQ(run_shell(test::quoted(CORDA_PROGRAM) + " render " + scene_ + " -o - > /dev/full").exit_code,
               6);
-    EXPECT_EQ(run_corda({"render", scene_, "-o", "/proc/out.mp4"}).exit_code, 6);
-    EXPECT_EQ(run_corda({"still", scene_, "--at", "0", "-o", "/proc/out.png"}).exit_code, 6);
-    EXPECT_EQ(run_corda({"simulate", scene_, "-o", "/proc/out.csv"}).exit_code, 6);
 }
 
 TEST_F(ExitCodes, SixIfTheFolderIsRemovedMidway) {

@@ -46,20 +46,6 @@ TEST(SceneHang, TakesParticlesForLinks) {
     EXPECT_EQ(by_particles.points_m, by_links.points_m);
 }
 
-TEST(SceneHang, HasLinksOrParticles) {
-    const std::string rope = "schema = 1\n[[rope]]\n";
-    expect_errors({
-        {rope + "hang = { length = 1 }",
-         "swing.toml:3:8: rope[0].hang: ", "give links, the number of links, or particles"},
-        {rope + "hang = { links = 2, particles = 3, length = 1 }",
-         "swing.toml:3:8: rope[0].hang: ", "links and particles are both given; keep one of them"},
-        {rope + "hang = { particles = 1, length = 1 }",
-         "swing.toml:3:22: rope[0].hang.particles: ", "1 is not >= 2"},
-        {rope + "hang = { links = 2, length = 1 }\nlabel = \"\\U0001f9f6\"",
-         "swing.toml:4:9: rope[0].label: ", "U+1F9F6 is an emoji"},
-    });
-}
-
 TEST(SceneHang, IsExactAtMultiplesOfARightAngle) {
     EXPECT_THAT(hang("0").points_m,
                 ElementsAre(Vec2{0, 0}, Vec2{0, -0.5}, Vec2{0, -1}, Vec2{0, -1.5}, Vec2{0, -2}));

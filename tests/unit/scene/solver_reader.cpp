@@ -58,49 +58,6 @@ TEST(SolversOfBodies, AloneGiveARopeItsReach) {
     EXPECT_EQ(scene.ropes[0].reach, 1);
 }
 
-TEST(SolversOfBodies, AreCheckedWithPlaceValueAndRemedy) {
-    const auto bodies = [](const std::string& keys) {
-        return three_bodies_with("method = \"rattle\"\n" + keys);
-    };
-    const std::string second = "\n[[solver.bodies]]\nmethod = \"exact\"\n";
-    expect_errors({
-        {bodies("ropes = [0, 2]"), "swing.toml:10:13: solver.bodies[0].ropes[1]: ",
-         "2 is out of range; the scene has ropes 0 .. 1, or -1 .. -2 from the end"},
-        {bodies("nets = [-2]"), "swing.toml:10:9: solver.bodies[0].nets[0]: ", "-2 is out of range"},
-        {with("solver.bodies = [{ nets = [0], method = \"rattle\" }]"),
-         "swing.toml:3:27: solver.bodies[0].nets: ", "the scene has no nets; remove it"},
-        {bodies("ropes = [1, 0, -1]"), "swing.toml:10:16: solver.bodies[0].ropes[2]: ",
-         "1 is named already, by solver.bodies[0]; remove one"},
-        {bodies("ropes = [0]\nnets = [0]" + second + "ropes = [1]" + second + "nets = [0]"),
-         "swing.toml:17:9: solver.bodies[2].nets[0]: ", "0 is named already, by solver.bodies[0]"},
-        {bodies(""), "swing.toml:8:1: solver.bodies[0]: ",
-         "names no body; give ropes or nets, the indices of [[rope]] or [[net]] tables"},
-        {bodies("ropes = []\nnets = []"), "swing.toml:8:1: solver.bodies[0]: ", "names no body"},
-        {bodies("ropes = 1"), "swing.toml:10:9: solver.bodies[0].ropes: ",
-         "1 is an integer, not a list; give the indices of [[rope]] tables"},
-        {bodies("ropes = [1.0]"), "swing.toml:10:10: solver.bodies[0].ropes[0]: ", "not an integer"},
-        {three_bodies_with("ropes = [0]"),
-         "swing.toml:8:1: solver.bodies[0].method: ", "missing; give one of: exact, rattle, relaxation"},
-        {three_bodies_with("ropes = [0]\nmethod = \"auto\""),
-         "swing.toml:10:10: solver.bodies[0].method: ", "give one of: exact, rattle, relaxation"},
-        {bodies("ropes = [0]\nstep = 0"),
-         "swing.toml:11:8: solver.bodies[0].step: ", "0 is not >= 1e-9; give the step in s, >= 1e-9"},
-        {bodies("ropes = [0]\nreach = 7"), "swing.toml:11:9: solver.bodies[0].reach: ",
-         "method \"rattle\" does not use it, only relaxation; remove it: bars to farther"},
-        {bodies("ropes = [0]\ntolerance_px = 1"), "swing.toml:11:1: solver.bodies[0].tolerance_px: ",
-         "unknown key \"tolerance_px\"; did you mean \"tolerance\"?"},
-        {bodies("rope = [0]"),
-         "swing.toml:10:1: solver.bodies[0].rope: ", "unknown key \"rope\"; did you mean \"ropes\"?"},
-        {bodies("nets = [0]\nsweps = 1"),
-         "swing.toml:11:1: solver.bodies[0].sweps: ", "did you mean \"sweeps\"?"},
-        {with("[solver]\nbodies = []"),
-         "swing.toml:4:10: solver.bodies: ", "the list is empty; give one or more [[solver.bodies]]"},
-        {with("[solver.bodies]\nmethod = \"exact\""),
-         "swing.toml:3:1: solver.bodies: ", "this is a table, not a list"},
-        {with("[solver]\nropes = [0]"), "swing.toml:4:1: solver.ropes: ", "a key of solver.bodies"},
-    });
-}
-
 TEST(SolversOfBodies, DoNotRepeatTheProblemsOfTheBodies) {
     const std::string solver = "[[solver.bodies]]\nropes = [0]\nmethod = \"exact\"\n";
     EXPECT_EQ(error_of("schema = 1\n[[rop]]\nmass = 1\n" + solver).message,

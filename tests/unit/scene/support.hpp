@@ -26,23 +26,6 @@ inline SceneError error_of(std::string_view toml, const std::vector<Setting>& se
     }
 }
 
-/// A wrong scene, and what its message says.
-struct Case {
-    std::string toml;
-    std::string begin;  ///< of the message: place and key
-    std::string part;   ///< stands in the message
-};
-
-inline void expect_errors(const std::vector<Case>& cases) {
-    for (const Case& wrong : cases) {
-        SCOPED_TRACE(wrong.toml);
-        const SceneError error = error_of(wrong.toml);
-        EXPECT_EQ(error.code, ExitCode::kInvalidScene);
-        EXPECT_THAT(error.message, testing::StartsWith(wrong.begin));
-        EXPECT_THAT(error.message, testing::HasSubstr(wrong.part));
-    }
-}
-
 /// A scene of one short rope, with more text at its end.
 inline std::string with(const std::string& more) {
     return "schema = 1\nrope = [{ hang = { links = 3, length = 3.0 } }]\n" + more;
