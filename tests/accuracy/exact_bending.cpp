@@ -9,9 +9,9 @@
 #include <numbers>
 #include <vector>
 
+#include "accuracy/root.hpp"
 #include "corda/reference/ropes.hpp"
 #include "support/gravity.hpp"
-#include "support/root.hpp"
 #include "support/solver_run.hpp"
 
 namespace corda::sim {

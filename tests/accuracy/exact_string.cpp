@@ -8,10 +8,10 @@
 #include <numbers>
 #include <vector>
 
+#include "accuracy/root.hpp"
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/exact/string/part.hpp"
 #include "support/gravity.hpp"
-#include "support/root.hpp"
 #include "support/solver_run.hpp"
 #include "support/strings.hpp"
 

@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include "corda/media/defs.hpp"
+#include "e2e/golden_suite.hpp"
 #include "support/command.hpp"
-#include "support/golden_suite.hpp"
 
 namespace corda {
 namespace {

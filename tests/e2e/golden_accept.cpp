@@ -10,8 +10,8 @@
 
 #include "corda/core/text.hpp"
 #include "corda/media/defs.hpp"
+#include "e2e/golden_suite.hpp"
 #include "support/command.hpp"
-#include "support/golden_suite.hpp"
 
 namespace corda {
 namespace {

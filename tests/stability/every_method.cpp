@@ -7,8 +7,8 @@
 
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/simulation.hpp"
+#include "stability/denormal_trap.hpp"
 #include "support/command.hpp"
-#include "support/denormal_trap.hpp"
 #include "support/plan_of.hpp"
 
 namespace corda::sim {

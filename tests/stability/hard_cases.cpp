@@ -9,7 +9,7 @@
 
 #include "corda/reference/ropes.hpp"
 #include "corda/study/hard_cases.hpp"
-#include "support/denormal_trap.hpp"
+#include "stability/denormal_trap.hpp"
 #include "support/solver_run.hpp"
 
 namespace corda::sim {

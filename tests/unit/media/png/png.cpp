@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <random>
 
@@ -14,10 +15,34 @@
 #include "support/cancel.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"
-#include "support/png_chunks.hpp"
 
 namespace corda::media {
 namespace {
+
+std::string big_endian(std::uint32_t number) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<char>(number >> shift));
+    return bytes;
+}
+
+/// The CRC of the PNG specification, third edition, 5.5.
+std::uint32_t crc_of(std::string_view bytes) {
+    std::uint32_t crc = 0xffffffffU;
+    for (const char c : bytes) {
+        crc ^= static_cast<unsigned char>(c);
+        for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1U) ^ ((crc & 1U) != 0 ? 0xedb88320U : 0U);
+    }
+    return ~crc;
+}
+
+/// A PNG with one more chunk, before its end.
+std::string with_chunk(const std::string& png, std::string_view type, std::string_view data) {
+    constexpr std::size_t kBytesOfEnd = 12;  // of the last chunk
+    const std::string checked = std::string(type) + std::string(data);
+    const std::string added =
+        big_endian(static_cast<std::uint32_t>(data.size())) + checked + big_endian(crc_of(checked));
+    return std::string(png).insert(png.size() - kBytesOfEnd, added);
+}
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -244,9 +269,9 @@ TEST_F(Png, LongAndManyTextsAreLeftOut) {
     const Image image = random_image(8, 8, true);
     write_png(file("a.png"), image, {{{"First", "kept"}}, 96.0});
     std::string png = test::read_file(file("a.png"));
-    png = test::with_chunk(png, "tEXt", std::string("Long") + '\0' + std::string(200'000, 'a'));
+    png = with_chunk(png, "tEXt", std::string("Long") + '\0' + std::string(200'000, 'a'));
     for (int i = 0; i < 100; ++i)
-        png = test::with_chunk(png, "tEXt", std::string("Many") + '\0' + std::string(60'000, 'b'));
+        png = with_chunk(png, "tEXt", std::string("Many") + '\0' + std::string(60'000, 'b'));
     test::write_file(file("b.png"), png);
     EXPECT_TRUE(read_png(file("b.png")) == image);
     const PngInfo info = read_png_info(file("b.png"));
@@ -261,7 +286,7 @@ TEST_F(Png, CanBeCancelledWithinItsTexts) {
     write_png(file("a.png"), random_image(8, 8, true));
     std::string png = test::read_file(file("a.png"));
     for (int i = 0; i < 4; ++i)
-        png = test::with_chunk(png, "tEXt", std::string("Long") + '\0' + std::string(1'000'000, 'a'));
+        png = with_chunk(png, "tEXt", std::string("Long") + '\0' + std::string(1'000'000, 'a'));
     test::write_file(file("b.png"), png);
     int asked = 0;
     const CancelScope stop([&] { return ++asked < 3; });

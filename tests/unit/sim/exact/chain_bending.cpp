@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "corda/sim/exact/chain_dynamics.hpp"
-#include "support/chains.hpp"
+#include "unit/sim/exact/chains.hpp"
 
 namespace corda::sim {
 namespace {

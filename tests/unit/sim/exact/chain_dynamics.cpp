@@ -7,7 +7,7 @@
 
 #include "corda/sim/solver.hpp"
 #include "corda/sim/system.hpp"
-#include "support/chains.hpp"
+#include "unit/sim/exact/chains.hpp"
 
 namespace corda::sim {
 namespace {

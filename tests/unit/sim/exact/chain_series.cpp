@@ -11,7 +11,7 @@
 
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/exact/chain_series.hpp"
-#include "support/chains.hpp"
+#include "unit/sim/exact/chains.hpp"
 
 namespace corda::sim {
 namespace {

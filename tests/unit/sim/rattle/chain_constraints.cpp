@@ -6,7 +6,7 @@
 
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/system.hpp"
-#include "support/constraint_checks.hpp"
+#include "unit/sim/rattle/constraint_checks.hpp"
 
 namespace corda::sim {
 namespace {

@@ -8,8 +8,8 @@
 #include "corda/core/cancel.hpp"
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/system.hpp"
-#include "support/constraint_checks.hpp"
 #include "support/nets.hpp"
+#include "unit/sim/rattle/constraint_checks.hpp"
 
 namespace corda::sim {
 namespace {

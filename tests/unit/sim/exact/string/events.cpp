@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "corda/sim/exact/exact.hpp"
-#include "support/chains.hpp"
 #include "support/strings.hpp"
+#include "unit/sim/exact/chains.hpp"
 
 namespace corda::sim {
 namespace {
