@@ -73,10 +73,8 @@ if [[ "${1:-build}" == long ]]; then
         jupyter-nbconvert   # runs the example notebook
         python3-ipykernel   # the kernel of the notebook
         chromium            # plays videos, and shows pages with scripts
-        parallel            # runs the shards of a film: examples/cluster
+        parallel            # runs the tasks of a sweep or a film: examples/cluster
         python3-distributed # the same on Dask
-        python3-yaml        # reads the example for Kubernetes
-        python3-kubernetes  # the keys that it may have
         mmdebstrap          # new Debian systems to build and install in
     )
 fi

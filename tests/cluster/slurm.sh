@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Makes a film and a sweep by examples/cluster/slurm.sh on Slurm, with one controller and two nodes on this machine. While
-# they make chunks of the film, one node is drained, one fails, and two tasks are killed. Fails unless film and sweep have
-# the bytes of one machine.
+# Makes a sweep and the pictures of a film by the commands of examples/cluster/README.md on Slurm, with one controller and two
+# nodes on this machine. While they make pictures, a task is killed. Fails unless both have the
+# bytes of one machine.
 # Usage: slurm.sh BUILD
 # BUILD is a folder of Corda with the tests. Takes root. The processes have a namespace, with which they end, and a network.
 set -euo pipefail
@@ -19,7 +19,7 @@ ip link set lo up
 ip address add 10.0.0.1/32 dev lo  # with 127.0.0.1 alone, getaddrinfo() finds no name
 mkdir "$work"/{state,spool,shared}
 export SLURM_CONF=$work/slurm.conf RUNS=$work/runs PATH=$root/tests/cluster:$PATH
-export CORDA_PROGRAM=$build/corda FOREIGN_FAULTS=$build/tests/libforeign_faults.so HELD_SHARDS="0/4 1/4 2/4 3/4"
+export CORDA_PROGRAM=$build/corda FOREIGN_FAULTS=$build/tests/libforeign_faults.so HELD="--frames 90:180"
 
 # Requeued tasks wait until the credentials of their first run expire.
 cat >"$SLURM_CONF" <<END
@@ -65,51 +65,28 @@ for node in node1 node2; do slurmd -D -N $node 2>/dev/null & done
 are_idle() { [[ $(sinfo --noheader --format %D --states idle) == 2 ]]; }
 wait_for are_idle
 
-# field N SHARD: of the last run of a shard, 1: its process, 2: its node.
-field() { grep -e "--shard $2/4\$" "$RUNS" | tail -n 1 | cut -d ' ' -f "$1"; }
-has_chunk() { compgen -G "swing.mp4.parts/00000$1-*" >/dev/null; }  # the first chunk of shard $1 is on the disk
 is_in_state() { scontrol show job --oneliner "$1" | grep -q "JobState=$2 "; }
-
-# submit COMMAND...: makes four shards, then joins them; sets the numbers of both jobs.
-submit() {
-    array=$(sbatch --parsable --array=0-3 "$root/examples/cluster/slurm.sh" "$@")
-    join=$(sbatch --parsable --dependency="afterany:$array" "$root/examples/cluster/slurm.sh" "$@")
-}
+# lines FIRST LAST: of the block of the page for Slurm.
+lines() { sed -n '/^## Slurm/,/^## Dask/p' "$root/examples/cluster/README.md" | sed -n '/^```sh/,/^```$/p' | sed '1d;$d' | sed -n "$1,$2p"; }
 
 cd "$work/shared"
 cp "$root"/tests/cluster/*.toml .
-"$CORDA_PROGRAM" render swing.toml -o alone.mp4 -q
-"$CORDA_PROGRAM" sweep sweep.toml -o alone -q
+"$CORDA_PROGRAM" render swing.toml -o alone/%06d.png -q
+"$CORDA_PROGRAM" sweep sweep.toml -o alone_clips -q
 
-submit corda render swing.toml -o swing.mp4
-wait_for has_chunk 0
-wait_for has_chunk 1
-drained=$(field 2 1)
-scontrol update nodename="$drained" state=drain reason=test  # task 1 runs to its end; no other begins here
-touch "$RUNS-release-1"
-kill -9 "$(field 1 0)"
-wait_for is_in_state "${array}_0" FAILED
-scontrol requeue "${array}_0"
-wait_for has_chunk 2
-lost=$(field 2 2)
-scontrol update nodename="$lost" state=down reason=test  # Slurm requeues task 2
-wait_for is_in_state "${array}_2" PENDING
-scontrol update nodename="$lost" state=resume
-wait_for has_chunk 3
-kill -9 "$(field 1 3)"  # the joining job makes its other chunks
-wait_for is_in_state "${array}_3" FAILED
+job=$(eval "$(lines 3 3 | sed 's/sbatch /sbatch --parsable /')")
+wait_for test -e frames/000090.png
+kill -9 "$(grep -e "$HELD" "$RUNS" | cut -d ' ' -f 1)"
+wait_for is_in_state "${job}_1" FAILED
+scontrol requeue "${job}_1"
+for i in 0 1 2 3 4 5 6 7; do wait_for is_in_state "${job}_$i" COMPLETED; done
+rm -f frames/*.tmp
+diff -r frames alone
+[[ $(grep -c -e "$HELD" "$RUNS") == 2 ]] || { echo "slurm.sh: the killed task was not run twice:"; cat "$RUNS"; exit 1; }
+
+export HELD=
+eval "$(lines 1 2 | sed 's/sbatch --dependency/sbatch --parsable --dependency/; $s/.*/join=$(&)/')"
 wait_for is_in_state "$join" COMPLETED
-
-cmp swing.mp4 alone.mp4
-for line in "0/4 2" "1/4 1" "2/4 2" "3/4 1"; do
-    count=$(grep -c -e "--shard ${line% *}\$" "$RUNS")
-    [[ $count == "${line#* }" ]] || { echo "slurm.sh: shard ${line% *} was run $count times:"; cat "$RUNS"; exit 1; }
-done
-[[ $(grep -c " $drained " "$RUNS") == 1 ]] || { echo "slurm.sh: $drained was drained and was given tasks:"; cat "$RUNS"; exit 1; }
-
-scontrol update nodename="$drained" state=resume
-submit corda sweep sweep.toml -o clips
-wait_for is_in_state "$join" COMPLETED
-diff -r clips alone
+diff -r clips alone_clips
 echo "slurm.sh: $(scontrol --version), $(munged --version | head -1): the bytes of one machine by these runs (process, node, arguments):"
 cat "$RUNS"

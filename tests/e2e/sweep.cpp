@@ -467,7 +467,7 @@ TEST_F(Sweep, HasTheSameFilesAfterKills) {
     EXPECT_EQ(manifest("tasks").at("complete"), false);
     EXPECT_FALSE(std::filesystem::exists(file("tasks/shard-000003.tar")));
     EXPECT_FALSE(std::filesystem::exists(file("tasks/metadata.csv")));
-    const auto again = sweep("tasks", {"--resume", "--json"});
+    const auto again = sweep("tasks", {"--json"});
     EXPECT_EQ(again.exit_code, 0) << again.err;
     EXPECT_GE(json::parse(again.out).at("shards_made"), 2);
     EXPECT_LE(json::parse(again.out).at("shards_made"), 4);

@@ -18,7 +18,6 @@ struct SweepOptions {
     std::string shard;
     int jobs = 0;
     bool checks = false;
-    bool resume = false;
     bool force = false;
     GlOptions gl;
     std::vector<std::string> plots;
@@ -123,11 +122,6 @@ void add_sweep(CLI::App& app, Action& action) {
         ->type_name("Y:X")
         ->excludes(check);
     command.add_flag("--sheet", options.sheet, "draw a contact sheet of 36 samples or fewer")
-        ->excludes(check);
-    command
-        .add_flag(
-            "--resume", options.resume,
-            "make the shards that are missing, as a sweep does in any case; for scripts that also render")
         ->excludes(check);
     command
         .add_flag("--force", options.force,
