@@ -44,7 +44,6 @@ class FormatsOfRender : public testing::Test {
 };
 
 TEST_F(FormatsOfRender, HaveTheSameBytesForAnyNumberOfJobs) {
-    // 38 frames are more than one chunk for every codec: a chunk has at most 25 at this rate.
     for (const auto& [ending, codec] :
          std::vector<std::pair<std::string, std::string>>{{"mp4", "libx264"},
                                                           {"mp4", "libx265"},

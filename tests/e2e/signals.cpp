@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "corda/media/chunks/join.hpp"
 #include "corda/media/defs.hpp"
 #include "support/command.hpp"
 #include "support/probe.hpp"
@@ -160,7 +159,7 @@ TEST_F(Signals, WriteNothingAfterATruncatedFrame) {
             EXPECT_EQ(bytes.substr(at, 6), std::string("FRAME\n").substr(0, bytes.size() - at))
                 << jobs << " " << frames;
         EXPECT_GE(frames, 4U);
-        EXPECT_LT(frames, 60U);  // nothing of the chunks after it
+        EXPECT_LT(frames, 60U);  // nothing of the frames after it
     }
 }
 
@@ -186,17 +185,43 @@ TEST_F(Signals, EndAComparison) {
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"a.png", "scene.toml"}));
 }
 
-TEST_F(Signals, EndTheFinalCopyKeepingTheFrames) {
-    const std::string video = folder_.file("a.mp4");
-    // The temporary file is the copy. Verifying it takes at least a second.
-    const Interrupted end = interrupt("render --verify full " + scene_ + " -o " + video, "TERM",
-                                      "ls " + video + ".*.tmp >/dev/null 2>&1");
-    EXPECT_EQ(end.result.exit_code, 143) << end.result.err;
-    EXPECT_THAT(end.result.err, HasSubstr("interrupted: 1200 of 1200 frames are in " + video + ".parts; " +
-                                          video + " was not written"));
-    EXPECT_LT(end.ms, kMaxMs);  // measured 21
-    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"a.mp4.parts", "scene.toml"}));
-    EXPECT_EQ(media::recover(video + ".parts", folder_.file("b.mp4")).frames, 1200);
+TEST_F(Signals, EndARenderAndLeaveNothing) {
+    for (const char* const name : {"a.mp4", "a.gif"}) {
+        std::string scene = kSceneOfSignals;
+        scene.erase(scene.find("preset"));  // a GIF has none
+        scene = folder_.write("scene.toml", scene);
+        const std::string video = folder_.file(name);
+        test::write_file(video, "precious");
+        const Interrupted end = interrupt("render --force " + scene + " -o " + video, "TERM",
+                                          "ls " + video + ".*.tmp >/dev/null 2>&1");
+        EXPECT_EQ(end.result.exit_code, 143) << end.result.err;
+        EXPECT_THAT(end.result.err, HasSubstr("interrupted; " + video + " was not written"));
+        EXPECT_LT(end.ms, kMaxMs);
+        EXPECT_EQ(test::read_file(video), "precious");
+        std::filesystem::remove(video);
+        EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});
+    }
+}
+
+TEST_F(Signals, EndASequenceOfPicturesThatResumeContinues) {
+    std::string scene = kSceneOfSignals;
+    scene.erase(scene.find("preset"));
+    scene = folder_.write("scene.toml", scene);
+    const std::string frames = folder_.file("frames");
+    const std::string render = "render " + scene + " --duration 4 -o " + frames + "/%04d.png";
+    const Interrupted end = interrupt(render, "INT", "test -e " + frames + "/0005.png");
+    EXPECT_EQ(end.result.exit_code, 130) << end.result.err;
+    EXPECT_THAT(end.result.err,
+                HasSubstr("frames are in " + frames + "/%04d.png (--resume draws the others)"));
+    const std::string program = test::quoted(CORDA_PROGRAM) + " ";
+    const auto resumed = run_shell(program + render + " --resume --json");
+    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    EXPECT_THAT(resumed.out, HasSubstr("\"frames\": 120"));
+    EXPECT_THAT(resumed.err, HasSubstr("were there already"));
+    const auto whole =
+        run_shell(program + "render " + scene + " --duration 4 -q -o " + folder_.file("whole") +
+                  "/%04d.png && diff -r " + frames + " " + folder_.file("whole"));
+    EXPECT_EQ(whole.exit_code, 0) << whole.out;
 }
 
 TEST_F(Signals, EndAStill) {
@@ -240,8 +265,6 @@ TEST_F(Signals, EndAnEncoderThatDoesNotReturn) {
             EXPECT_LT(end.ms, kMaxMs);  // measured 840 .. 880
         }
     }
-    // The remaining folder has no chunk and blocks no other render.
-    EXPECT_EQ(run_corda({"render", scene_, "-o", video, "-q", "--duration", "1"}).exit_code, 0);
 }
 
 TEST_F(Signals, WaitForASlowDiskToStoreKeptFrames) {

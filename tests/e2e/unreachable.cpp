@@ -72,7 +72,6 @@ TEST_F(Unreachable, OutputsAreNamed) {
 TEST_F(Unreachable, InputsAreNamed) {
     expect_refusal({"render", loop_ + "/a.toml", "-o", folder_.file("a.mp4")}, loop_);
     expect_refusal({"render", "--from", loop_ + "/a.mp4", "-o", folder_.file("a.mp4")}, loop_);
-    expect_refusal({"recover", loop_ + "/a.mp4.parts"}, "cannot read '" + loop_ + "/a.mp4.parts'");
     expect_refusal({"compare", loop_ + "/a.png", scene_}, "cannot read '" + loop_ + "/a.png'");
     expect_refusal({"golden", scene_, "--dir", loop_ + "/a"}, loop_);
     expect_refusal({"golden", loop_ + "/a", "--dir", folder_.path()}, loop_);

@@ -146,26 +146,6 @@ INSTANTIATE_TEST_SUITE_P(Rates, VideoTimes,
                              return fmt::format("{}_{}", std::get<2>(rate.param), std::get<3>(rate.param));
                          });
 
-TEST_F(Video, IsRecoveredFromAKilledRender) {
-    // Killed as soon as one chunk is complete, long before the last one.
-    const std::string parts = video_ + ".parts";
-    const auto killed = test::run_shell(
-        test::quoted(CORDA_PROGRAM) + " render " + scene_ + " --duration 300 -q -o " + video_ +
-        " & pid=$!; until ls " + parts +
-        "/0* >/dev/null 2>&1 || ! kill -0 $pid; do sleep 0.01; done; kill -9 $pid; wait $pid");
-    EXPECT_EQ(killed.exit_code, 137) << killed.err;
-    EXPECT_EQ(run_corda({"recover", scene_}).exit_code, 2);
-    const auto none = run_corda({"recover", scene_ + ".parts"});  // the scene exists and is not touched
-    EXPECT_EQ(none.exit_code, 6);
-    EXPECT_THAT(none.err, HasSubstr("there is no '" + scene_ + ".parts'"));
-    const auto recovered = run_corda({"recover", parts, "--json"});
-    ASSERT_EQ(recovered.exit_code, 0) << recovered.err;
-    const json report = json::parse(recovered.out);
-    EXPECT_EQ(report["output"], video_);
-    EXPECT_GE(report["frames"].get<int>(), 60);  // one chunk
-    EXPECT_FALSE(std::filesystem::exists(parts));
-}
-
 TEST_F(Video, IsTaggedForBrowsers) {
     ASSERT_EQ(run_corda({"render", scene_, "-o", video_}).exit_code, 0);
     const auto probe = test::run_shell("ffprobe -v error -of json -show_streams " + video_);

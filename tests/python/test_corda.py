@@ -225,20 +225,22 @@ def test_a_progress_callback_cannot_use_its_film(film, tmp_path):
     assert raised.value.code == 2
 
 
-def test_an_interrupted_video_is_gone_on_with(tmp_path):
-    film = corda.Film(SCENE, size=(320, 180), fps=60, duration=5)
-    film.save(tmp_path / "whole.mp4")
-    with pytest.raises(corda.Error) as raised:
-        film.save(tmp_path / "a.mp4", on_progress=lambda done, total: not list(tmp_path.glob("a.mp4.parts/0*")))
+def test_a_stopped_video_leaves_nothing_and_stopped_pictures_are_gone_on_with(tmp_path):
+    film = corda.Film(SCENE, size=(320, 180), fps=60, duration=1)
+    with pytest.raises(corda.Error, match="nothing was written") as raised:
+        film.save(tmp_path / "a.mp4", on_progress=lambda done, total: done < 30)
     assert raised.value.code == 130
-    assert (tmp_path / "a.mp4.parts").exists()
-    with pytest.raises(corda.Error, match="interrupted render"):
-        film.save(tmp_path / "a.mp4")
-    heard = []
-    assert film.save(tmp_path / "a.mp4", resume=True, on_progress=lambda done, total: heard.append(done)) == 300
-    assert min(done for done in heard if done > 0) >= 60  # existing frames are not drawn again
-    assert (tmp_path / "a.mp4").read_bytes() == (tmp_path / "whole.mp4").read_bytes()
-    assert not (tmp_path / "a.mp4.parts").exists()
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(corda.Error, match="--resume continues pictures alone"):
+        film.save(tmp_path / "a.mp4", resume=True)
+    pictures = tmp_path / "%03d.png"
+    with pytest.raises(corda.Error, match="the frames so far are in"):
+        film.save(pictures, on_progress=lambda done, total: not (tmp_path / "010.png").exists())
+    assert 11 <= len(list(tmp_path.iterdir())) < 60
+    kept = (tmp_path / "003.png").stat().st_mtime_ns
+    assert film.save(pictures, resume=True) == 60
+    assert (tmp_path / "003.png").stat().st_mtime_ns == kept
+    assert len(list(tmp_path.iterdir())) == 60
 
 
 def test_ctrl_c_ends_a_render(tmp_path):

@@ -178,11 +178,6 @@ void install_signal_handlers(bool json) {
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-void keep_words_of_parts(const std::string& parts) {
-    make_last_words(
-        fmt::format("; chunks that were finished are in {} (--resume continues it)", printable(parts)));
-}
-
 void note_end_of_work(int exit_code) {
     std::fflush(stdout);
     std::fflush(stderr);

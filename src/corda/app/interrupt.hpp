@@ -15,9 +15,6 @@ namespace corda::app {
 /// once. SIGPIPE and SIGXFSZ become ordinary write errors.
 void install_signal_handlers(bool json);
 
-/// Sets the folder of chunks that the message of a process that was ended by its handler names.
-void keep_words_of_parts(const std::string& parts);
-
 /// To be called when all output and messages are written. If destructors or exit handlers of libraries do not
 /// return after a signal, the process then ends with this code and without a message.
 void note_end_of_work(int exit_code);

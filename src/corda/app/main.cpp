@@ -16,6 +16,7 @@
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/output_file.hpp"
+#include "corda/core/removed.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -63,6 +64,8 @@ void take_last_values(CLI::App& app) {
 std::optional<std::string> unknown_command(const CLI::App& app, int argc, char** argv) {
     if (argc < 2 || argv[1][0] == '-') return std::nullopt;
     if (find_command(app, argv[1]) != nullptr) return std::nullopt;
+    if (const auto replacement = replacement_of(argv[1]); !replacement.empty())
+        return fmt::format("the command \"{}\" was removed; {}", argv[1], replacement);
     return fmt::format("there is no command \"{}\"; {}", argv[1], advice(argv[1], command_names(app)));
 }
 
@@ -78,8 +81,10 @@ std::optional<std::string> unknown_option(const CLI::App& app, int argc, char** 
         const std::string_view argument = argv[i];
         if (argument == "--") return std::nullopt;
         const std::string word(argument.substr(0, argument.find('=')));
-        if (word.starts_with("--") && std::ranges::find(names, word) == names.end())
-            return fmt::format("unknown option {}; {}", word, advice(word, names));
+        if (!word.starts_with("--") || std::ranges::find(names, word) != names.end()) continue;
+        if (const auto replacement = replacement_of(word); !replacement.empty())
+            return fmt::format("the option {} was removed; {}", word, replacement);
+        return fmt::format("unknown option {}; {}", word, advice(word, names));
     }
     return std::nullopt;
 }
@@ -155,7 +160,7 @@ int run(int argc, char** argv) {
     return act(Console(console_def), action);
 }
 
-/// Lets the memory of one chunk's encoder serve the next one: zeroing fresh pages took 14 % of a render.
+/// Lets the memory of a picture serve the next one: zeroing fresh pages took 14 % of a render.
 void keep_memory() {
     constexpr int kMaxOfHeap = 32 << 20;  // glibc's limit
     constexpr int kMaxKept = 1 << 30;
@@ -163,7 +168,7 @@ void keep_memory() {
     static_cast<void>(mallopt(M_TRIM_THRESHOLD, kMaxKept));
 }
 
-/// SVT-AV1 prints its settings for every chunk unless told otherwise; a wish of the user stays.
+/// SVT-AV1 prints its settings unless told otherwise; a wish of the user stays.
 void keep_encoders_quiet() {
     setenv("SVT_LOG", "1", 0);
 }

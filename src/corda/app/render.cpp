@@ -16,10 +16,10 @@
 #include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/media/chunks/video_writer.hpp"
 #include "corda/media/encode/resources.hpp"
 #include "corda/media/format/file_kind.hpp"
 #include "corda/media/format/format.hpp"
+#include "corda/media/write/video_file.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "corda/pipeline/plan_text.hpp"
@@ -35,11 +35,9 @@ struct RenderOptions {
     EmptyPictures empty;
     std::string output;
     std::string frames;
-    std::string verify = "keys";
     bool pad = false;
     bool force = false;
     bool resume = false;
-    std::string shard;
     bool dry_run = false;
 
     void require() const { scene.require(); }
@@ -68,28 +66,22 @@ std::string range_of(const Console& console, const RenderOptions& options) {
     return takes_recorded ? options.scene.provenance(console).frames : options.frames;
 }
 
-/// Whether the video is one file, which is made of chunks.
 bool is_one_file(const std::string& output) {
     const media::FileKind kind = media::find_ending(output).kind;
     return kind == media::FileKind::kVideo || kind == media::FileKind::kAnimation;
 }
 
 /// Message for an interrupted render: its state, and the way to continue.
-std::string words_of_interruption(const RenderOptions& options, std::int64_t first, std::int64_t count,
+std::string words_of_interruption(const RenderOptions& options, std::int64_t count,
                                   const Rendered& rendered) {
-    if (rendered.frames == 0)
-        return fmt::format("interrupted before any frame was finished; {} was not written", options.output);
-    if (is_one_file(options.output))
+    if (is_one_file(options.output) || rendered.frames == 0)
+        return fmt::format("interrupted; {} was not written", options.output);
+    if (is_standard_output(options.output))
         return fmt::format(
-            "interrupted: {} of {} frames are in {}; {} was not written (--resume makes the others, corda "
-            "recover makes a video of these)",
-            rendered.frames, count, rendered.kept, options.output);
-    const std::int64_t next = first + rendered.frames;
-    const std::string done = fmt::format("interrupted: {} of {} frames ({}..{}) are in {}", rendered.frames,
-                                         count, first, next - 1, rendered.kept);
-    const bool is_resumable = !is_standard_output(options.output) && rendered.frames < count;
-    return is_resumable ? fmt::format("{} (--frames {}:{} draws the others)", done, next, first + count)
-                        : done;
+            "interrupted: {} of {} frames are in standard output, perhaps with a part of the next",
+            rendered.frames, count);
+    return fmt::format("interrupted: {} of {} frames are in {} (--resume draws the others)", rendered.frames,
+                       count, options.output);
 }
 
 nlohmann::json report(Film& film, const VideoDef& video, const RenderOptions& options,
@@ -97,7 +89,7 @@ nlohmann::json report(Film& film, const VideoDef& video, const RenderOptions& op
     nlohmann::json json = film_json(film);
     json["output"] = options.output;
     json["frames"] = rendered.frames;
-    json["resumed_frames"] = rendered.resumed_frames;
+    json["kept_frames"] = rendered.kept_frames;
     json["width"] = video.width_px;
     json["height"] = video.height_px;
     json["fps"] = video.fps.per_second();
@@ -107,8 +99,6 @@ nlohmann::json report(Film& film, const VideoDef& video, const RenderOptions& op
     json["frames_per_wall_s"] = static_cast<double>(rendered.frames) / wall_s;
     json["encoder"] = rendered.encoder;
     json["empty_frames"] = rendered.empty_frames;
-    if (!options.shard.empty()) json["shard"] = options.shard;
-    json["chunks"] = rendered.chunks;
     json["gl_renderer"] = gl_renderer;
     return json;
 }
@@ -136,8 +126,7 @@ void report_format(const Console& console, const Scene& scene, const CheckedOutp
                                     format.codec->standard));
     }
     if (!view::look_of(scene.style).ground.is_opaque() && std::string_view(format.ending->muxer) == "gif")
-        console.warning(
-            "a GIF has no half transparent pixels: edges will be hard; .webm and .mov keep them");
+        console.warning("a GIF has no half transparent pixels: edges will be hard; .webm and .mov keep them");
     const std::string warning =
         media::disk_warning(format, output.path(), output.video().def, output.end() - output.first());
     if (!warning.empty()) console.warning(warning);
@@ -154,17 +143,11 @@ void check_standard_output(const Console& console, const std::string& output) {
 }
 
 void report_rendered(const Console& console, bool is_verified, const Rendered& rendered, double wall_s) {
-    if (rendered.resumed_frames > 0)
-        console.info(fmt::format("{} were there already", counted(rendered.resumed_frames, "frame")));
-    if (!rendered.damaged_chunks.empty())
-        console.warning(fmt::format("damaged since they were written, and made again: chunk {}",
-                                    fmt::join(rendered.damaged_chunks, ", ")));
+    if (rendered.kept_frames > 0)
+        console.info(fmt::format("{} were there already", counted(rendered.kept_frames, "frame")));
     if (!rendered.left_out.empty())
         console.warning(fmt::format("--from cannot repeat the output, because {}; keep the scene file",
                                     rendered.left_out));
-    if (rendered.is_short_of_memory)
-        console.info(fmt::format("only {} at a time: more would not fit into the memory that is free",
-                                 counted(rendered.jobs, "chunk")));
     console.info(fmt::format("{} in {:.3g} s, {:.1f} per second{}", counted(rendered.frames, "frame"), wall_s,
                              static_cast<double>(rendered.frames) / wall_s, is_verified ? "; verified" : ""));
 }
@@ -216,8 +199,6 @@ RenderDef render_def(const Console& console, const RenderOptions& options) {
     RenderDef def;
     def.force = options.force;
     def.resume = options.resume;
-    def.verify_all = options.verify == "full";
-    if (!options.shard.empty()) def.shard = parse_shard(options.shard);
     parse_range(range_of(console, options), def);
     return def;
 }
@@ -253,21 +234,18 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     report_gl(console, gl);
     on_progress = {};  // from now on, simulation shows as frames that are drawn
     std::optional<Progress> progress(std::in_place, console, "render", count);
-    if (is_one_file(options.output)) keep_words_of_parts(media::parts_path(options.output));
     const Rendered rendered = render_video(film, output, [&](std::int64_t done, std::int64_t total) {
         progress->update(total > 0 ? done * count / total : done);
         return interruption() == ExitCode::kOk;
     });
     progress.reset();
     if (rendered.reader_left) return ExitCode::kOk;
-    if (!rendered.complete)
-        throw Error(interruption(), words_of_interruption(options, output.first(), count, rendered));
+    if (!rendered.complete) throw Error(interruption(), words_of_interruption(options, count, rendered));
     const double wall_s = now_s() - start_s;
-    report_rendered(console, is_one_file(options.output) && !def.shard, rendered, wall_s);
+    report_rendered(console, is_one_file(options.output), rendered, wall_s);
     warn_of_branch(console, film);
     if (!def.end) warn_of_other_pictures(console, options.output, output.end());
-    if (!is_standard_output(options.output))
-        console.result(def.shard ? media::parts_path(options.output) : options.output);
+    if (!is_standard_output(options.output)) console.result(options.output);
     console.report(report(film, video, options, rendered, wall_s, gl.renderer));
     const EmptyPictures empty{options.empty.are_failures, rendered.empty_frames, rendered.first_empty_s};
     return empty.report(console, rendered.frames, film.scene().camera);
@@ -293,28 +271,14 @@ void add_render(CLI::App& app, Action& action) {
         command, "--pix", "video.pix",
         "pixels: 420, 444 (sharper coloured edges; browsers and QuickTime refuse H.264 "
         "High 4:4:4) or rgba");
-    options.scene.add_shortcut(command, "--threads", "video.threads", "threads of each encoder");
-    options.scene.add_shortcut(command, "--jobs", "video.jobs", "chunks made at a time; 0: one per core");
+    options.scene.add_shortcut(command, "--threads", "video.threads",
+                               "threads of the encoder, on which the bytes depend");
+    options.scene.add_shortcut(command, "--jobs", "video.jobs", "threads that draw; 0: one per core");
     command.add_option("--frames", options.frames, "only frames FIRST <= k < END")->type_name("FIRST:END");
-    command
-        .add_option("--verify", options.verify,
-                    "frames of a finished H.264, ProRes or FFV1 video to decode: key frames (keys) or all "
-                    "(full); of other videos all")
-        ->check(CLI::IsMember({"keys", "full"}))
-        ->capture_default_str();
     options.gl.add_to(command);
     options.empty.add_to(command);
-    auto* const force = command.add_flag("--force", options.force, "replace an existing output");
-    auto* const resume = command.add_flag("--resume", options.resume,
-                                          "make the chunks that an interrupted render or shards of the same "
-                                          "scene lack, and join all");
-    command
-        .add_option(
-            "--shard", options.shard,
-            "make only every N-th chunk, from chunk I (0 .. N - 1) on, in OUT.parts; --resume joins them")
-        ->type_name("I/N")
-        ->excludes(resume)
-        ->excludes(force);
+    command.add_flag("--force", options.force, "replace an existing output");
+    command.add_flag("--resume", options.resume, "of pictures: draw those that are missing or damaged");
     command.add_flag("--dry-run", options.dry_run, "check everything but OpenGL, and write nothing");
 }
 

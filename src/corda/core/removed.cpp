@@ -10,6 +10,9 @@ namespace {
 constexpr std::array kRemoved{
     Removed{"recover", "render a long film as pictures (-o frames/%06d.png), which --resume continues"},
     Removed{"verify", "render checks each video before it gets its name; ffprobe tells about any video"},
+    Removed{"join", "join videos by ffmpeg's demuxer concat"},
+    Removed{"--verify", "render checks each video before it gets its name"},
+    Removed{"--shard", "give each machine a part of the pictures of a sequence (--frames FIRST:END)"},
     Removed{"--panels", "use several ropes in one scene, or join videos by ffmpeg's filter xstack"},
     Removed{"--flip", "use --max, --mean or --share"},
     Removed{"--ssim", "use --max, --mean or --share"},

@@ -32,11 +32,10 @@ struct EncoderDef {
     std::string preset;      ///< a word or a number of the encoder; empty: its default
     std::optional<int> crf;  ///< the encoder's constant rate factor, 1 .. kMaxCrf; empty: its default
     PixelChoice pix = PixelChoice::kAuto;
-    /// Threads of each encoder, 1 .. kMaxThreads. Fixed, never the number of cores: x264's bytes
-    /// depend on it.
-    int threads = 1;
-    /// How many chunks of a video are drawn and encoded at a time, 0 .. kMaxThreads; 0: one per core. The
-    /// bytes do not depend on it.
+    /// Threads of the encoder, 1 .. kMaxThreads. Fixed, never the number of cores: x264's bytes depend on
+    /// it.
+    int threads = 4;
+    /// Threads that draw frames, 0 .. kMaxThreads; 0: one per core. The bytes do not depend on it.
     int jobs = 0;
 };
 
@@ -75,7 +74,7 @@ struct VideoDef {
     }
 };
 
-/// One of several processes, perhaps on several machines, that make the chunks of a video together.
+/// One of several processes, perhaps on several machines, that share the work of one command.
 struct Shard {
     std::int64_t index = 0;  ///< 0 .. count - 1
     std::int64_t count = 1;

@@ -169,37 +169,28 @@ class Renderer {
 /// Options of render_video().
 struct RenderDef {
     bool force = false;  ///< replace an existing file
-    /// Continue an interrupted render of the same scene, frames and name, if there is one: the file has the
-    /// bytes of an uninterrupted render. Throws kUsage for chunks of another render, naming a difference.
+    /// Of pictures ("frames/%06d.png"): draw those alone that are missing or damaged. A picture of another
+    /// scene or version of Corda is an error (kUsage), or drawn again with `force`.
     bool resume = false;
-    /// Make only the chunks of this shard, in the folder `PATH.parts`. A render with `resume` makes those
-    /// that are missing, and joins all.
-    std::optional<Shard> shard{};
     std::int64_t first = 0;
     std::optional<std::int64_t> end;  ///< one past the last frame; default Film::frame_count()
-    /// Decode every frame of the finished video, also of H.264, ProRes and FFV1.
-    bool verify_all = false;
     /// Called after each frame, repeatedly while a large frame is drawn and while the finished video is
-    /// copied and verified, and with all frames at the end; returning false stops. Frames of a .gif count
+    /// ended and verified, and with all frames at the end; returning false stops. Frames of a .gif count
     /// twice: once when drawn, and once when encoded after all are drawn.
     OnProgress on_progress;
 };
 
 /// The result of render_video().
 struct Rendered {
-    std::int64_t frames = 0;
-    std::int64_t resumed_frames = 0;             ///< number of these that an interrupted render had made
-    std::vector<std::int64_t> damaged_chunks{};  ///< chunks of that render that were damaged, made again
-    std::int64_t chunks = 0;                     ///< number of chunks that were made
-    bool complete = true;                        ///< false if it was cancelled or on_progress returned false
-    std::string kept;               ///< where the frames are if incomplete; empty if there are none
+    std::int64_t frames = 0;       ///< number of frames that are written
+    std::int64_t kept_frames = 0;  ///< number of these that were there (see RenderDef::resume)
+    bool complete =
+        true;  ///< false if it was cancelled or on_progress returned false: then there is no video
     bool reader_left = false;       ///< standard output was closed by its reader, which ends the video early
-    std::string encoder;            ///< libav's name
+    std::string encoder{};          ///< libav's name
     std::int64_t empty_frames = 0;  ///< number of empty frames
     double first_empty_s = 0.0;     ///< time of the first empty frame
-    int jobs = 1;                   ///< number of chunks made at a time
-    bool is_short_of_memory = false;  ///< jobs was reduced because memory is short
-    std::string left_out{};           ///< why a file that can carry its scenes does not; empty: it does
+    std::string left_out{};         ///< why a file that can carry its scene does not; empty: it does
 };
 
 namespace media {
@@ -213,17 +204,15 @@ class CheckedOutput {
     /// The frames first <= k < end of the film are written.
     [[nodiscard]] std::int64_t first() const;
     [[nodiscard]] std::int64_t end() const;
-    [[nodiscard]] bool verifies_all() const { return verify_all_; }
     /// Format and codec; for this library's own use.
     [[nodiscard]] const media::CheckedVideo& video() const { return *video_; }
 
   private:
     friend CheckedOutput check_render(const Scene& scene, const std::string& path, const RenderDef& def,
                                       const std::string& input);
-    CheckedOutput(media::CheckedVideo video, bool verify_all);
+    explicit CheckedOutput(media::CheckedVideo video);
 
     std::shared_ptr<const media::CheckedVideo> video_;
-    bool verify_all_;
 };
 
 /// Checks a video of `scene` before there is a film: everything that could make render_video() refuse it
@@ -235,7 +224,7 @@ class CheckedOutput {
 
 /// Draws, encodes, verifies and names a video of a film whose scene was checked. Calls `on_progress` as
 /// RenderDef describes. Throws corda::Error: kUsage for a film of another size or rate, kEncoder, kNoGl, kIo,
-/// kDiverged (the frames before the divergence are kept; the message names their file).
+/// kDiverged. After an error there is no video; pictures that were written stay.
 Rendered render_video(Film& film, const CheckedOutput& output, const OnProgress& on_progress = {});
 
 /// Checks the output, then renders it; the ending of `path` chooses the format.

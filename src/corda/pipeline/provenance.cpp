@@ -265,14 +265,7 @@ std::string text_in_video(const std::string& path, OriginUse use) {
     const std::string text = media::comment_in_child(path, remedy(use));
     Json comment = Json::parse(text, nullptr, false);  // its size and depth were checked
     if (!comment.is_object() || !comment.contains(kProvenanceKey)) return {};
-    Json& provenance = comment[kProvenanceKey];
-    // A recovered video has the frames that it contains, not those that were planned.
-    const auto first = media::comment_number(text, "first_frame");
-    const auto frames = media::comment_number(text, "frames");
-    const auto is_count = [](std::int64_t number) { return number >= 0 && number <= std::int64_t{1} << 53U; };
-    if (provenance.is_object() && first && frames && is_count(*first) && is_count(*frames))
-        provenance["frames"] = fmt::format("{}:{}", *first, *first + *frames);
-    return provenance.dump();
+    return comment[kProvenanceKey].dump();
 }
 
 }  // namespace

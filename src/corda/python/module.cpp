@@ -96,9 +96,9 @@ std::int64_t save(PyFilm& film, const std::string& path, bool force, bool resume
         film.with_film([&](corda::Film& shown) { return corda::render_video(shown, path, def); }, asking);
     if (!rendered.complete) {
         throw corda::Error(corda::ExitCode::kInterrupted,
-                           rendered.kept.empty()
-                               ? "stopped by on_progress; there is no frame yet"
-                               : "stopped by on_progress; the frames so far are in '" + rendered.kept + "'");
+                           rendered.frames == 0
+                               ? "stopped by on_progress; nothing was written"
+                               : "stopped by on_progress; the frames so far are in '" + path + "'");
     }
     return rendered.frames;
 }

@@ -74,9 +74,9 @@ std::vector<Key> video_keys() {
          "how pixels are stored",
          "444 sharpens coloured edges; browsers and QuickTime do not play it in H.264"},
         {"video", "threads", integer(1, EncoderDef::kMaxThreads), "", encoder(&EncoderDef::threads),
-         "the number of threads of each encoder", "the bytes depend on it"},
+         "the number of threads of the encoder", "the bytes depend on it"},
         {"video", "jobs", integer(0, EncoderDef::kMaxThreads), "", encoder(&EncoderDef::jobs),
-         "how many chunks of the video are made at a time", "0: one per core; the bytes do not depend on it"},
+         "the number of threads that draw frames", "0: one per core; the bytes do not depend on it"},
     };
 }
 

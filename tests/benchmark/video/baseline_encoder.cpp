@@ -3,7 +3,7 @@
 #include <string>
 
 #include "corda/core/basics.hpp"
-#include "corda/media/chunks/chunk.hpp"
+#include "corda/media/encode/encoder.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/media/libav_handles.hpp"
 
@@ -20,7 +20,7 @@ CodecContext open_x264(const VideoDef& video, int threads) {
     context->height = video.height_px;
     context->pix_fmt = AV_PIX_FMT_YUV420P;
     context->time_base = frame_time_base(video.fps.rational());
-    context->gop_size = static_cast<int>(frames_per_chunk(video.fps));
+    context->gop_size = key_interval(video.fps);
     context->thread_count = threads;
     Options options;
     const Format format{.codec = find_codec("libx264")};

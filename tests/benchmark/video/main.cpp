@@ -55,23 +55,20 @@ nlohmann::json to_json(const VideoDef& video, const Measured& measured) {
         stages.push_back(
             {{"name", stage.name}, {"ms_per_frame", 1e3 * stage.wall_s / frames}, {"cpu_s", stage.cpu_s}});
     }
-    return {
-        {"width", video.width_px},
-        {"height", video.height_px},
-        {"preset", video.encoder.preset},
-        {"frames", measured.frames},
-        {"jobs", measured.jobs},
-        {"fps", frames / measured.render_s.median()},
-        {"encoder_fps", frames / measured.encoder_s.median()},
-        {"ratio_to_encoder", measured.ratio.median()},
-        {"render_s", spread_json(measured.render_s)},
-        {"encoder_s", spread_json(measured.encoder_s)},
-        {"ratio", spread_json(measured.ratio)},
-        {"encoder_pictures", measured.pictures},
-        {"peak_rss_mib", measured.peak_rss_mib},
-        {"encoder_rss_mib", measured.encoder_rss_mib},
-        {"rss_per_job_mib", measured.rss_per_job_mib ? nlohmann::json(*measured.rss_per_job_mib) : nullptr},
-        {"stages", stages}};
+    return {{"width", video.width_px},
+            {"height", video.height_px},
+            {"preset", video.encoder.preset},
+            {"frames", measured.frames},
+            {"fps", frames / measured.render_s.median()},
+            {"encoder_fps", frames / measured.encoder_s.median()},
+            {"ratio_to_encoder", measured.ratio.median()},
+            {"render_s", spread_json(measured.render_s)},
+            {"encoder_s", spread_json(measured.encoder_s)},
+            {"ratio", spread_json(measured.ratio)},
+            {"encoder_pictures", measured.pictures},
+            {"peak_rss_mib", measured.peak_rss_mib},
+            {"encoder_rss_mib", measured.encoder_rss_mib},
+            {"stages", stages}};
 }
 
 void print(const VideoDef& video, const Measured& measured) {
@@ -83,14 +80,8 @@ void print(const VideoDef& video, const Measured& measured) {
             video.width_px, video.height_px, video.encoder.preset, frames / measured.render_s.median(),
             frames / measured.encoder_s.median(), measured.ratio.median(), measured.ratio.least(),
             measured.ratio.largest()));
-    std::string memory =
-        fmt::format("  peak of memory {:.0f} MiB with {} at a time; one encoder {:.0f} MiB",
-                    measured.peak_rss_mib, counted(measured.jobs, "chunk"), measured.encoder_rss_mib);
-    if (measured.rss_per_job_mib)
-        memory += fmt::format("; a further chunk adds {:.0f} MiB to it", *measured.rss_per_job_mib);
-    else if (measured.jobs > 1)
-        memory += "; the memory of a further chunk is too small to measure";
-    fmt::print("{}\n", memory);
+    fmt::print("  peak of memory {:.0f} MiB; one encoder {:.0f} MiB\n", measured.peak_rss_mib,
+               measured.encoder_rss_mib);
     std::string text = "  one thread, ms per frame (CPU):";
     for (const Stage& stage : measured.stages)
         text += fmt::format(" {} {:.2f} ({:.2f})", stage.name, 1e3 * stage.wall_s / frames,

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -15,9 +16,10 @@
 #include "corda/core/child_process.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/machine.hpp"
-#include "corda/media/chunks/chunk.hpp"
-#include "corda/media/chunks/video_writer.hpp"
+#include "corda/media/encode/encoder.hpp"
+#include "corda/media/encode/frame_maker.hpp"
 #include "corda/media/format/format.hpp"
+#include "corda/media/write/video_file.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "support/yuv420_image.hpp"
 
@@ -62,16 +64,14 @@ std::int64_t frames_of(const BenchDef& def) {
     return std::min(def.frames, def.scene.video.fps.frame_count(def.scene.world.duration_s));
 }
 
-json render(const BenchDef& def, int jobs, const std::string& path) {
-    Scene scene = def.scene;
-    scene.video.encoder.jobs = jobs;
+json render(const BenchDef& def, const std::string& path) {
     const double start_s = now_s();
-    Film film(scene, def.film);
+    Film film(def.scene, def.film);
     RenderDef render;
     render.force = true;
     render.end = frames_of(def);
-    const Rendered rendered = render_video(film, path, render);
-    return {{"wall_s", now_s() - start_s}, {"peak_rss_mib", memory_mib("VmHWM")}, {"jobs", rendered.jobs}};
+    static_cast<void>(render_video(film, path, render));
+    return {{"wall_s", now_s() - start_s}, {"peak_rss_mib", memory_mib("VmHWM")}};
 }
 
 /// Draws the frames one after the other.
@@ -103,8 +103,8 @@ json encode_alone(const BenchDef& def) {
     malloc_trim(0);
     const double before_mib = memory_mib("VmRSS");
     reset_peak_memory();
-    const std::int64_t chunk = std::min<std::int64_t>(frames_of(def), media::frames_per_chunk(video.fps));
-    static_cast<void>(encoder.encode(chunk, 1));
+    const std::int64_t few = std::min<std::int64_t>(frames_of(def), media::key_interval(video.fps));
+    static_cast<void>(encoder.encode(few, 1));
     const double encoder_mib = memory_mib("VmHWM") - before_mib;
     const double start_s = now_s();
     static_cast<void>(encoder.encode(frames_of(def), usable_cores()));
@@ -152,15 +152,17 @@ json measure_stages(const BenchDef& def, const std::string& path) {
     });
     clock.measure("open OpenGL", [&] { static_cast<void>(film->gl()); });
     clock.measure("draw", [&] { draw_frames(*film, frames, [](const Image&, const Damage&) {}); });
-    test::Yuv420Image converted(video.width_px, video.height_px);
-    media::VideoWriter writer(path, video, {}, {.force = true});
+    const media::CheckedVideo checked =
+        media::check_video_output({.path = path, .def = video, .end = frames, .force = true});
+    media::VideoFile file(checked, {});
+    media::FrameMaker maker(checked.format, 0, {});
+    std::int64_t k = 0;
     draw_frames(*film, frames, [&](const Image& picture, const Damage& damage) {
-        clock.measure("convert", [&] {
-            for (const PixelRect& part : damage) convert_to_yuv420(picture, part, converted);
-        });
-        clock.measure("encode", [&] { writer.write(picture, damage); });
+        media::ReadyFrame ready;
+        clock.measure("convert", [&] { ready = maker.make(k++, picture, damage); });
+        clock.measure("encode", [&] { file.add(std::move(ready)); });
     });
-    clock.measure("copy and verify", [&] { writer.finish(); });
+    clock.measure("end and check", [&] { file.commit(); });
     return clock.to_json();
 }
 
@@ -182,25 +184,16 @@ Measured measure(const BenchDef& def) {
     measured.frames = frames_of(def);
     measured.pictures = std::min(measured.frames, max_pictures(def.scene.video));
     for (int i = 0; i < def.repeats; ++i) {
-        const json rendered = in_child([&] { return render(def, def.scene.video.encoder.jobs, path); });
+        const json rendered = in_child([&] { return render(def, path); });
         const json encoded = in_child([&] { return encode_alone(def); });
         const auto render_s = rendered["wall_s"].get<double>();
         const auto encoder_s = encoded["wall_s"].get<double>();
         measured.render_s.add(render_s);
         measured.encoder_s.add(encoder_s);
         measured.ratio.add(render_s / encoder_s);
-        if (const auto peak_mib = rendered["peak_rss_mib"].get<double>(); peak_mib > measured.peak_rss_mib) {
-            measured.peak_rss_mib = peak_mib;
-            measured.jobs = rendered["jobs"].get<int>();
-        }
+        measured.peak_rss_mib = std::max(measured.peak_rss_mib, rendered["peak_rss_mib"].get<double>());
         measured.encoder_rss_mib =
             std::max(measured.encoder_rss_mib, encoded["encoder_rss_mib"].get<double>());
-    }
-    if (measured.jobs > 1) {
-        const json one = in_child([&] { return render(def, 1, path); });
-        const double added_mib = measured.peak_rss_mib - one["peak_rss_mib"].get<double>();
-        const double per_job_mib = added_mib / (measured.jobs - 1) - measured.encoder_rss_mib;
-        if (per_job_mib > 0.0) measured.rss_per_job_mib = per_job_mib;
     }
     for (const json& stage : in_child([&] { return measure_stages(def, path); }))
         measured.stages.push_back(

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +22,7 @@ struct BenchDef {
 };
 
 /// A part of the work on a video, measured by itself in one thread: simulate, open OpenGL, draw, convert (to
-/// 4:2:0), encode (with conversion and the writing of the part), copy and verify.
+/// 4:2:0), encode, end and check.
 struct Stage {
     std::string name;
     double wall_s = 0.0;
@@ -33,16 +32,12 @@ struct Stage {
 /// Figures of videos of one size and preset.
 struct Measured {
     std::int64_t frames = 0;
-    int jobs = 0;                  ///< chunks that were made at a time in the render of the peak
     report::Times render_s;        ///< from the scene to the verified file
     report::Times encoder_s;       ///< x264 alone, from memory, with a thread per core
     report::Times ratio;           ///< of each render to the encoder that ran after it
     std::int64_t pictures = 0;     ///< different ones that x264 alone encodes, there and back
     double peak_rss_mib = 0.0;     ///< of a render
     double encoder_rss_mib = 0.0;  ///< that one encoder of one thread takes
-    /// What each job beyond the first adds to the peak, less the encoder; empty for one job, and if it is
-    /// smaller than the noise of both.
-    std::optional<double> rss_per_job_mib;
     std::vector<Stage> stages;
 };
 

@@ -25,9 +25,9 @@ std::string printed() {
 TEST_F(Video, LeavesLibavsMessagesToTheHostOnceItIsDone) {
     EXPECT_THAT(printed(), HasSubstr("trouble of the host"));
     {
-        VideoWriter writer(file("a.mp4"), small_video(), {});
+        VideoWriter writer(file("a.mp4"), small_video(), 8);
         EXPECT_THAT(printed(), IsEmpty());
-        write_frames(writer, 8);
+        write_frames(writer, 0, 8);
         writer.finish();
     }
     EXPECT_THAT(printed(), HasSubstr("trouble of the host"));
@@ -35,13 +35,11 @@ TEST_F(Video, LeavesLibavsMessagesToTheHostOnceItIsDone) {
 
 TEST_F(Video, PrintsNothingItself) {
     make_video(file("a.mp4"), small_video(), 8);
-    std::string broken = test::read_file(file("a.mp4"));
-    const std::size_t data = broken.find("mdat");
-    for (std::size_t i = data + 700; i < data + 800; ++i) broken[i] = static_cast<char>(broken[i] ^ 0xa5);
     testing::internal::CaptureStderr();
-    test::write_file(file("b.mp4"), broken);
-    EXPECT_FALSE(verify(file("b.mp4")).ok());
-    abandon_video(file("c.mp4"), small_video(), 8);
+    {
+        VideoWriter unfinished(file("c.mp4"), small_video(), 8);
+        write_frames(unfinished, 0, 4);
+    }
     make_video(file("d.mp4"), small_video(), 8);
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }

@@ -9,10 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "corda/media/chunks/chunk_folder.hpp"
-#include "corda/media/chunks/join.hpp"
-#include "corda/media/chunks/video_writer.hpp"
-#include "corda/media/verify/verify.hpp"
+#include "corda/media/write/video_file.hpp"
 #include "support/command.hpp"
 
 namespace corda::media {
@@ -75,26 +72,35 @@ inline VideoDef small_video(Rational fps = {60, 1}) {
     return def;
 }
 
-inline void write_frames(VideoWriter& writer, std::int64_t frames) {
-    for (std::int64_t k = 0; k < frames; ++k) {
-        writer.write(frame_image(k), k == 0 ? Damage{{0, 0, kWidth, kHeight}} : Damage{bob(k), bob(k - 1)});
-    }
+/// Writes a video of drawn frames, as one drawing thread does.
+class VideoWriter {
+  public:
+    VideoWriter(const std::string& path, const VideoDef& def, std::int64_t frames,
+                bool is_transparent = false, bool force = false)
+        : video_(check_video_output({.path = path, .def = def, .end = frames, .force = force}, "",
+                                    is_transparent)),
+          file_(video_, {"A swing", R"({"scene":"test"})"}),
+          maker_(video_.format, 0, {}) {}
+
+    void write(const Image& frame, const Damage& damage) { file_.add(maker_.make(next_++, frame, damage)); }
+    void write_whole(const Image& frame) { write(frame, {frame.rect()}); }
+    void finish() { file_.commit(); }
+
+  private:
+    CheckedVideo video_;
+    VideoFile file_;
+    FrameMaker maker_;
+    std::int64_t next_ = 0;
+};
+
+inline void write_frames(VideoWriter& writer, std::int64_t first, std::int64_t end) {
+    for (std::int64_t k = first; k < end; ++k) writer.write(frame_image(k), {bob(k), bob(k - 1)});
 }
 
 inline void make_video(const std::string& path, const VideoDef& def, std::int64_t frames) {
-    VideoWriter writer(path, def, {"A swing", R"({"scene":"test"})"}, {.force = true});
-    write_frames(writer, frames);
-    EXPECT_EQ(writer.frames(), frames);
+    VideoWriter writer(path, def, frames, false, true);
+    write_frames(writer, 0, frames);
     writer.finish();
-}
-
-/// Leaves the chunks of a video that was not finished. Returns their files.
-inline std::vector<ChunkFile> abandon_video(const std::string& path, const VideoDef& def,
-                                            std::int64_t frames) {
-    VideoWriter writer(path, def, {"A swing", "{}"}, {.force = true});
-    write_frames(writer, frames);
-    EXPECT_EQ(writer.abandon(), parts_path(path));
-    return chunk_files(parts_path(path));
 }
 
 /// Changes a byte of a file.
@@ -102,12 +108,6 @@ inline void damage(const std::string& path, std::size_t at) {
     std::string bytes = test::read_file(path);
     bytes.at(at) = static_cast<char>(bytes.at(at) ^ 1);
     test::write_file(path, bytes);
-}
-
-inline std::string all_problems(const VerifyReport& report) {
-    std::string text;
-    for (const auto& line : report.problems) text += line + "\n";
-    return text;
 }
 
 }  // namespace corda::media

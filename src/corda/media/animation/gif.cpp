@@ -1,133 +1,131 @@
+#include "corda/media/animation/gif.hpp"
+
+#include <fcntl.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <memory>
-#include <vector>
+#include <string>
+#include <utility>
 
-#include "corda/media/animation/animation.hpp"
-#include "corda/media/animation/palette.hpp"
-#include "corda/media/chunks/track_output.hpp"
+#include "corda/core/cancel.hpp"
+#include "corda/core/text.hpp"
 #include "corda/media/encode/encoder.hpp"
-#include "corda/media/libav_handles.hpp"
+#include "corda/media/encode/pixels.hpp"
+#include "corda/media/write/track_output.hpp"
 
 namespace corda::media {
 namespace {
 
-/// The colours of a GIF, and how pictures get them.
-class Colors {
-  public:
-    explicit Colors(Palette palette) : palette_(std::move(palette)) {}
-
-    void convert(const Image& image, AVFrame& frame) {
-        for (std::size_t i = 0; i < Palette::kSize; ++i) {
-            const auto [b, g, r, a] = palette_.bgra(i);
-            const std::array<std::uint8_t, 4> entry{b, g, r, a};
-            std::copy(entry.begin(), entry.end(), frame.data[1] + 4 * i);
-        }
-        for (int y = 0; y < image.height(); ++y)
-            palette_.map(image.pixel(0, y), image.width(),
-                         frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0]);
-    }
-
-  private:
-    Palette palette_;
-};
-
-using SharedColors = std::shared_ptr<Colors>;
-
-std::unique_ptr<LibavEncoder> open_encoder(const Ending& ending, Rational fps, const Image& picture,
-                                           const SharedColors& colors) {
-    const Format format{.ending = &ending, .codec = find_codec("gif"), .pixel_format = "pal8"};
-    VideoDef video;
-    video.width_px = picture.width();
-    video.height_px = picture.height();
-    video.fps = FrameRate(fps);
-    return std::make_unique<LibavEncoder>(
-        format, video,
-        [colors](const Image& image, const PixelRect&, AVFrame& frame) { colors->convert(image, frame); });
+/// A file that is gone when it is closed: in a folder, or where the system keeps such files if the folder's
+/// file system has none. Null with errno if there is none.
+FileHandle unnamed_file(const std::string& folder) {
+    const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    return FileHandle(descriptor < 0 ? std::tmpfile() : ::fdopen(descriptor, "w+b"));
 }
 
-/// Encodes sections of the frames.
-class SectionEncoder {
-  public:
-    SectionEncoder(const Ending& ending, const AnimationDef& def, const Palette& palette)
-        : ending_(&ending),
-          fps_(def.fps),
-          pictures_(def.chunks),
-          colors_(std::make_shared<Colors>(palette)) {}
-
-    [[nodiscard]] std::vector<Packet> encode(std::int64_t first, std::int64_t end,
-                                             const OrderedWorkers<std::vector<Packet>>& all) {
-        std::vector<Packet> packets;
-        std::unique_ptr<LibavEncoder> encoder;
-        // A frame is encoded as its changes since the frame before.
-        for (std::int64_t k = std::max<std::int64_t>(first - 1, 0); k < end && !all.is_stopped(); ++k) {
-            if (k != last_) pictures_.go_to(k);
-            last_ = k;
-            const Image& picture = pictures_.picture();
-            if (!encoder) encoder = open_encoder(*ending_, fps_, picture, colors_);
-            encoder->encode(picture, {picture.rect()}, [&](AVPacket& packet) {
-                if (k < first) return av_packet_unref(&packet);
-                packet.pts = packet.dts = k;
-                packets.push_back(check_allocated(Packet(av_packet_alloc()), "a packet"));
-                av_packet_move_ref(packets.back().get(), &packet);
-            });
-        }
-        return packets;
+/// A frame of colour numbers, all of them 0.
+Frame indexed_frame(const VideoDef& def, const Palette& palette) {
+    Frame frame = new_frame(AV_PIX_FMT_PAL8, def.width_px, def.height_px);
+    for (std::size_t i = 0; i < Palette::kSize; ++i) {
+        const std::array<std::uint8_t, 4> entry = palette.bgra(i);
+        std::ranges::copy(entry, frame->data[1] + 4 * i);
     }
-
-  private:
-    const Ending* ending_;
-    Rational fps_;
-    LosslessFrames pictures_;
-    SharedColors colors_;
-    std::int64_t last_ = -1;
-};
-
-Palette choose_palette(const AnimationDef& def, const OnProgress& on_progress) {
-    PaletteMaker all;
-    const auto new_maker = [&def] {
-        return [pictures = std::make_shared<LosslessFrames>(def.chunks)](
-                   std::int64_t first, std::int64_t end, const OrderedWorkers<PaletteMaker>& every) {
-            PaletteMaker colors;
-            for (std::int64_t k = first; k < end && !every.is_stopped(); ++k) {
-                pictures->go_to(k);
-                colors.add(pictures->picture());
-            }
-            return colors;
-        };
-    };
-    for_each_section<PaletteMaker>(def, on_progress, new_maker,
-                                   [&all](const PaletteMaker& colors) { all.add(colors); });
-    return all.make();
+    return frame;
 }
 
 }  // namespace
 
-void write_gif(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
-               OutputFile& output) {
-    // The palette is the first half of the work.
-    const auto half = [&](std::int64_t begin) {
-        return [&, begin](std::int64_t k, std::int64_t all) {
-            return !on_progress || on_progress(begin + k / 2, all);
-        };
-    };
-    const Palette palette = choose_palette(def, half(0));
-    LosslessFrames pictures(def.chunks);
-    pictures.go_to(0);
+GifWriter::GifWriter(const Format& format, const VideoDef& def, const std::string& folder)
+    : format_(format),
+      def_(def),
+      folder_(folder.empty() ? "." : folder),
+      last_(def.width_px, def.height_px),
+      since_(last_.size_bytes() / 4),
+      kept_(unnamed_file(folder_)) {
+    if (!kept_) fail_file("make a temporary file in", folder_, errno);
+}
+
+void GifWriter::keep(const void* bytes, std::size_t count) {
+    if (std::fwrite(bytes, 1, count, kept_.get()) != count)
+        fail_file("write a temporary file in", folder_, errno);
+}
+
+void GifWriter::read(void* bytes, std::size_t count) {
+    if (std::fread(bytes, 1, count, kept_.get()) != count)
+        fail_file("read a temporary file in", folder_, errno);
+}
+
+void GifWriter::count_pixel(std::size_t index) {
+    colors_.add(last_.data() + 4 * index, static_cast<std::uint64_t>(frames_ - since_[index]));
+    since_[index] = static_cast<std::int32_t>(frames_);
+}
+
+void GifWriter::add_row(const std::uint8_t* row, int y, int x0, int x1) {
+    std::uint8_t* const before = last_.pixel(0, y);
+    const auto differs = [&](int x) { return std::memcmp(row + 4 * x, before + 4 * x, 4) != 0; };
+    for (int x = x0; x < x1; ++x) {
+        if (frames_ > 0 && !differs(x)) continue;
+        const int first = x;
+        while (x < x1 && (frames_ == 0 || differs(x))) {
+            if (frames_ > 0)
+                count_pixel(static_cast<std::size_t>(y) * static_cast<std::size_t>(last_.width()) +
+                            static_cast<std::size_t>(x));
+            ++x;
+        }
+        const Run run{y, first, x - first};
+        const std::size_t bytes = 4 * static_cast<std::size_t>(run.count);
+        keep(&run, sizeof run);
+        keep(row + 4 * first, bytes);
+        std::memcpy(before + 4 * first, row + 4 * first, bytes);
+    }
+}
+
+void GifWriter::add(const ReadyFrame& frame) {
+    const AVFrame& pixels = *frame.pixels;
+    const Damage whole{last_.rect()};
+    for (const PixelRect& part : frames_ == 0 ? whole : frame.changed) {
+        const PixelRect inside = part.intersected(last_.rect());
+        for (int y = inside.y0; y < inside.y1; ++y)
+            add_row(pixels.data[0] + std::ptrdiff_t{y} * pixels.linesize[0], y, inside.x0, inside.x1);
+    }
+    const Run end{0, 0, 0};
+    keep(&end, sizeof end);
+    ++frames_;
+}
+
+void GifWriter::write(const OutputFile& output, const std::function<void(std::int64_t)>& on_frames) {
+    for (std::size_t i = 0; i < since_.size(); ++i) count_pixel(i);
+    Palette palette = colors_.make();
+    Format indexed = format_;
+    indexed.pixel_format = "pal8";
+    LibavEncoder encoder(indexed, def_);
     TrackOutput track(
-        output, ending.muxer,
-        open_encoder(ending, def.fps, pictures.picture(), std::make_shared<Colors>(palette))->parameters(),
-        {.fps = def.fps, .title = {}, .comment = {}, .frames = def.frames, .loop = def.loop});
-    using Packets = std::vector<Packet>;
-    const auto new_maker = [&] {
-        return [encoder = std::make_shared<SectionEncoder>(ending, def, palette)](
-                   std::int64_t first, std::int64_t end, const OrderedWorkers<Packets>& all) {
-            return encoder->encode(first, end, all);
-        };
+        output, format_.ending->muxer, encoder.parameters(),
+        {.fps = def_.fps.rational(), .title = {}, .comment = {}, .frames = frames_, .loop = def_.loop});
+    const auto take = [&track](AVPacket& packet) {
+        packet.dts = packet.pts;
+        track.write(packet);
     };
-    for_each_section<Packets>(def, half(def.frames / 2), new_maker, [&track](const Packets& packets) {
-        for (const Packet& packet : packets) track.write(*packet);
-    });
+    Frame frame = indexed_frame(def_, palette);
+    std::vector<std::uint8_t> pixels(4 * static_cast<std::size_t>(def_.width_px));
+    if (std::fflush(kept_.get()) != 0) fail_file("write a temporary file in", folder_, errno);
+    std::rewind(kept_.get());
+    for (std::int64_t k = 0; k < frames_; ++k) {
+        check_libav(av_frame_make_writable(frame.get()), ExitCode::kTemporary, "cannot copy a picture");
+        for (Run run{}; read(&run, sizeof run), run.count > 0;) {
+            read(pixels.data(), 4 * static_cast<std::size_t>(run.count));
+            palette.map(pixels.data(), run.count,
+                        frame->data[0] + std::ptrdiff_t{run.y} * frame->linesize[0] + run.x);
+        }
+        encoder.encode(check_allocated(Frame(av_frame_clone(frame.get())), "a frame"), {}, take);
+        on_frames(k + 1);
+        check_cancelled();
+    }
+    encoder.drain(take);
     track.finish();
 }
 

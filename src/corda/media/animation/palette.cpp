@@ -126,39 +126,16 @@ void Palette::map(const std::uint8_t* rgba, int count, std::uint8_t* indices) {
     }
 }
 
-void PaletteMaker::add(std::uint32_t rgb, std::uint64_t count) {
+void PaletteMaker::add(const std::uint8_t* rgba, std::uint64_t count) {
+    if (count == 0 || rgba[3] < kHalfOpaque) return;
+    const std::uint32_t rgb = packed(rgba);
     if (exact_.size() <= kMaxColors) exact_.insert(rgb);
     constexpr unsigned kDropped = 8 - kBits;
-    const std::array<std::uint64_t, 3> levels{rgb >> 16U, rgb >> 8U & 0xffU, rgb & 0xffU};
+    const std::array<std::uint64_t, 3> levels{rgba[0], rgba[1], rgba[2]};
     PaletteBin& bin =
         bins_[levels[0] >> kDropped << (2 * kBits) | levels[1] >> kDropped << kBits | levels[2] >> kDropped];
     bin.count += count;
     for (std::size_t c = 0; c < 3; ++c) bin.sums[c] += count * levels[c];
-}
-
-void PaletteMaker::add(const Image& picture) {
-    const std::uint8_t* p = picture.data();
-    std::uint32_t run_rgb = 0;
-    std::uint64_t run = 0;
-    for (std::size_t i = 0; i < picture.size_bytes(); i += 4, p += 4) {
-        if (p[3] < kHalfOpaque) continue;
-        const std::uint32_t rgb = packed(p);
-        if (rgb != run_rgb && run > 0) {
-            add(run_rgb, run);
-            run = 0;
-        }
-        run_rgb = rgb;
-        ++run;
-    }
-    if (run > 0) add(run_rgb, run);
-}
-
-void PaletteMaker::add(const PaletteMaker& other) {
-    if (exact_.size() <= kMaxColors) exact_.insert(other.exact_.begin(), other.exact_.end());
-    for (std::size_t i = 0; i < bins_.size(); ++i) {
-        bins_[i].count += other.bins_[i].count;
-        for (std::size_t c = 0; c < 3; ++c) bins_[i].sums[c] += other.bins_[i].sums[c];
-    }
 }
 
 std::vector<Color> PaletteMaker::cut_boxes() const {

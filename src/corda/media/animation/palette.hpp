@@ -39,22 +39,20 @@ struct PaletteBin {
     std::array<std::uint64_t, 3> sums{};
 };
 
-/// Chooses the palette of some pictures: their own colours if there are few enough, otherwise the means of
+/// Chooses the palette of some pixels: their own colours if there are few enough, otherwise the means of
 /// boxes in the colour cube, each cut in two at its widest where most different colours are (P. Heckbert:
 /// Color image quantization for frame buffer display. SIGGRAPH 1982). A colour counts by the logarithm of its
 /// pixels, or a ground would take all entries.
 class PaletteMaker {
   public:
-    void add(const Image& picture);
-    /// Adds all pictures of another one.
-    void add(const PaletteMaker& other);
+    /// Adds `count` pixels of a colour, RGBA; none if they are less than half opaque.
+    void add(const std::uint8_t* rgba, std::uint64_t count);
     [[nodiscard]] Palette make() const;
 
   private:
     static constexpr int kBits = 6;
     static constexpr std::size_t kMaxColors = Palette::kSize - 1;
 
-    void add(std::uint32_t rgb, std::uint64_t count);
     [[nodiscard]] std::vector<Color> cut_boxes() const;
 
     std::unordered_set<std::uint32_t> exact_;  ///< all colours, while there are few

@@ -1,16 +1,17 @@
 #include "corda/media/encode/encoder.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstring>
 #include <memory>
-#include <span>
 #include <string_view>
+#include <utility>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/text.hpp"
-#include "corda/media/bytes.hpp"
-#include "corda/media/chunks/chunk.hpp"
 #include "corda/media/encode/pixels.hpp"
 
 namespace corda::media {
@@ -24,7 +25,7 @@ void configure(AVCodecContext& context, const Format& format, const VideoDef& de
     context.sample_aspect_ratio = {1, 1};
     context.time_base = frame_time_base(fps);
     context.framerate = to_libav(fps);
-    context.gop_size = static_cast<int>(frames_per_chunk(format, def.fps));
+    context.gop_size = key_interval(def.fps);
     context.thread_count = def.encoder.threads;
     context.flags |= AV_CODEC_FLAG_GLOBAL_HEADER | AV_CODEC_FLAG_CLOSED_GOP | AV_CODEC_FLAG_BITEXACT;
     set_colors(context.pix_fmt, context);
@@ -50,23 +51,15 @@ void open(AVCodecContext& context, const VideoDef& def, const EncoderOptions& se
         throw_error(ExitCode::kEncoder, "{} does not know the option '{}'", encoder, name);
 }
 
-Frame frame_for(const AVCodecContext& context) {
-    Frame frame = check_allocated(Frame(av_frame_alloc()), "a frame");
-    frame->format = context.pix_fmt;
-    frame->width = context.width;
-    frame->height = context.height;
-    frame->sample_aspect_ratio = context.sample_aspect_ratio;
-    set_duration(*frame, 1);
-    set_colors(context.pix_fmt, *frame);
-    frame->chroma_location = context.chroma_sample_location;
-    check_libav(av_frame_get_buffer(frame.get(), 0), ExitCode::kTemporary, "cannot make a picture");
-    return frame;
-}
-
 }  // namespace
 
-LibavEncoder::LibavEncoder(const Format& format, const VideoDef& def, Convert convert)
-    : codec_(format.codec), convert_(std::move(convert)) {
+int key_interval(const FrameRate& fps) {
+    constexpr double kFrames = 60.0;
+    const double per_second = fps.rational().value();
+    return static_cast<int>(std::max(1L, std::lround(std::clamp(kFrames, per_second, 2.0 * per_second))));
+}
+
+LibavEncoder::LibavEncoder(const Format& format, const VideoDef& def) : codec_(format.codec) {
     const LogCapture log;
     const AVCodec* const codec = avcodec_find_encoder_by_name(format.codec->name);
     if (codec == nullptr)
@@ -81,32 +74,31 @@ LibavEncoder::LibavEncoder(const Format& format, const VideoDef& def, Convert co
     check_libav(avcodec_parameters_from_context(parameters_.get(), context_.get()), ExitCode::kEncoder,
                 "cannot read the encoder's parameters");
     packet_ = check_allocated(Packet(av_packet_alloc()), "a packet");
-    frame_ = frame_for(*context_);
 }
 
 LibavEncoder::~LibavEncoder() {
-    if (!frame_ || !codec_->must_drain || is_drained_) return;
+    if (!context_ || !codec_->must_drain || is_drained_) return;
     const LogCapture log;
-    if (frames_ == 0) {
-        for (AVBufferRef* const buffer : frame_->buf)
-            if (buffer != nullptr) std::memset(buffer->data, 0, buffer->size);
-        frame_->pts = 0;
-        if (avcodec_send_frame(context_.get(), frame_.get()) < 0) return;
+    try {
+        if (frames_ == 0) {
+            const Frame blank = new_frame(context_->pix_fmt, context_->width, context_->height);
+            for (AVBufferRef* const buffer : blank->buf)
+                if (buffer != nullptr) std::memset(buffer->data, 0, buffer->size);
+            blank->pts = 0;
+            if (avcodec_send_frame(context_.get(), blank.get()) < 0) return;
+        }
+    } catch (const Error&) {
+        return;
     }
     if (avcodec_send_frame(context_.get(), nullptr) < 0) return;
     while (avcodec_receive_packet(context_.get(), packet_.get()) >= 0) av_packet_unref(packet_.get());
 }
 
-void LibavEncoder::encode(const Image& frame, const Damage& damage, const PacketSink& sink) {
-    assert(frame.width() == frame_->width && frame.height() == frame_->height);
+void LibavEncoder::encode(Frame frame, const Damage& /*changed*/, const PacketSink& sink) {
+    assert(frame->width == context_->width && frame->height == context_->height);
     const LogCapture log;
-    const PixelRect whole = frame.rect();
-    const auto changed = frames_ == 0 ? std::span(&whole, 1) : std::span(damage);
-    if (!changed.empty())
-        check_libav(av_frame_make_writable(frame_.get()), ExitCode::kTemporary, "cannot copy a picture");
-    for (const PixelRect& part : changed) convert_(frame, part, *frame_);
-    frame_->pts = frames_;
-    send(frame_.get(), sink);
+    frame->pts = frames_;
+    send(frame.get(), sink);
     ++frames_;
 }
 
@@ -129,67 +121,12 @@ void LibavEncoder::send(const AVFrame* frame, const PacketSink& sink) {
     }
 }
 
-namespace {
-
-/// Each frame as the file that write_png() writes.
-class PictureEncoder : public Encoder {
-  public:
-    PictureEncoder(const VideoDef& def, std::int64_t first_frame, PictureInfo info)
-        : first_frame_(first_frame),
-          info_(std::move(info)),
-          parameters_(check_allocated(CodecParameters(avcodec_parameters_alloc()), "codec parameters")),
-          packet_(check_allocated(Packet(av_packet_alloc()), "a packet")) {
-        parameters_->codec_type = AVMEDIA_TYPE_VIDEO;
-        parameters_->codec_id = AV_CODEC_ID_PNG;
-        parameters_->width = def.width_px;
-        parameters_->height = def.height_px;
-    }
-
-    void encode(const Image& frame, const Damage& /*damage*/, const PacketSink& sink) override {
-        const CancelScope whole({}, CancelScope::Outer::kIgnored);  // half a frame is of no use
-        const std::string bytes = png_bytes(frame, info_ ? info_(first_frame_ + frames_) : PngInfo{});
-        check_libav(av_new_packet(packet_.get(), static_cast<int>(bytes.size())), ExitCode::kTemporary,
-                    "cannot make a packet");
-        std::memcpy(packet_->data, bytes.data(), bytes.size());
-        packet_->pts = frames_++;
-        packet_->duration = 1;
-        packet_->flags |= AV_PKT_FLAG_KEY;
-        sink(*packet_);
-    }
-
-    void drain(const PacketSink& /*sink*/) override {}
-    [[nodiscard]] const AVCodecParameters& parameters() const override { return *parameters_; }
-
-  private:
-    std::int64_t first_frame_;
-    PictureInfo info_;
-    CodecParameters parameters_;
-    Packet packet_;
-    std::int64_t frames_ = 0;
-};
-
-}  // namespace
-
-std::unique_ptr<Encoder> make_encoder(const Format& format, const VideoDef& def, std::int64_t first_frame,
-                                      const PictureInfo& info) {
-    return format.codec->make(format, def, first_frame, info);
+std::unique_ptr<Encoder> make_encoder(const Format& format, const VideoDef& def) {
+    return format.codec->make(format, def);
 }
 
-std::unique_ptr<Encoder> make_png_encoder(const Format& /*format*/, const VideoDef& def,
-                                          std::int64_t first_frame, const PictureInfo& info) {
-    return std::make_unique<PictureEncoder>(def, first_frame, info);
-}
-
-std::unique_ptr<Encoder> make_libav_encoder(const Format& format, const VideoDef& def,
-                                            std::int64_t /*first_frame*/, const PictureInfo& /*info*/) {
-    if (std::string_view(format.pixel_format) != "yuva420p")
-        return std::make_unique<LibavEncoder>(format, def);
-    return std::make_unique<LibavEncoder>(
-        format, def,
-        [fill = std::make_shared<AlphaBleed>()](const Image& image, const PixelRect& part, AVFrame& frame) {
-            const PixelRect changed = fill->update(image, part);
-            convert_pixels(fill->picture(), changed, frame);
-        });
+std::unique_ptr<Encoder> make_libav_encoder(const Format& format, const VideoDef& def) {
+    return std::make_unique<LibavEncoder>(format, def);
 }
 
 }  // namespace corda::media

@@ -4,13 +4,10 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "corda/core/image.hpp"
-#include "corda/media/encode/pixels.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/media/libav_handles.hpp"
-#include "corda/media/verify/verify.hpp"
 
 namespace corda::media {
 
@@ -21,13 +18,9 @@ class Encoder : NonCopyable {
 
     virtual ~Encoder() = default;
 
-    /// Encodes the next frame: `frame` inside `damage` and the previous frame elsewhere; the first frame is
-    /// taken whole. Packets that become ready go to `sink`. Throws corda::Error (kEncoder).
-    virtual void encode(const Image& frame, const Damage& damage, const PacketSink& sink) = 0;
-
-    /// The next frame is one whose colours are known. An encoder that knows what a decoder will show compares
-    /// it, as soon as the frame is encoded, and throws corda::Error (kEncoder).
-    virtual void expect(const std::vector<ColorPatch>& /*patches*/) {}
+    /// Encodes the next frame, in the pixel format and the size of the video; `changed` is where it may
+    /// differ from the frame before. Packets that become ready go to `sink`. Throws corda::Error (kEncoder).
+    virtual void encode(Frame frame, const Damage& changed, const PacketSink& sink) = 0;
 
     /// Ends the stream; the remaining packets go to `sink`. Throws corda::Error (kEncoder).
     virtual void drain(const PacketSink& sink) = 0;
@@ -36,24 +29,20 @@ class Encoder : NonCopyable {
     [[nodiscard]] virtual const AVCodecParameters& parameters() const = 0;
 };
 
-/// Opens the encoder of a format for a definition that was checked, for a chunk that begins with frame
-/// `first_frame`; a picture file says what `info` tells. Throws corda::Error (kEncoder).
-[[nodiscard]] std::unique_ptr<Encoder> make_encoder(const Format& format, const VideoDef& def,
-                                                    std::int64_t first_frame = 0,
-                                                    const PictureInfo& info = {});
+/// Frames from one key frame to the next: one to two seconds, 60 where both are possible.
+[[nodiscard]] int key_interval(const FrameRate& fps);
+
+/// Opens the encoder of a format for a definition that was checked. Throws corda::Error (kEncoder).
+[[nodiscard]] std::unique_ptr<Encoder> make_encoder(const Format& format, const VideoDef& def);
 
 /// Any encoder of libav in the table of codecs.
 class LibavEncoder : public Encoder {
   public:
-    /// Puts a part of a picture into a frame; see pixels.hpp.
-    using Convert = std::function<void(const Image&, const PixelRect&, AVFrame&)>;
-
     /// Opens the encoder of `format`. Throws corda::Error (kEncoder).
-    LibavEncoder(const Format& format, const VideoDef& def, Convert convert = convert_pixels);
-
+    LibavEncoder(const Format& format, const VideoDef& def);
     ~LibavEncoder() override;
 
-    void encode(const Image& frame, const Damage& damage, const PacketSink& sink) override;
+    void encode(Frame frame, const Damage& changed, const PacketSink& sink) override;
     void drain(const PacketSink& sink) override;
     [[nodiscard]] const AVCodecParameters& parameters() const override { return *parameters_; }
 
@@ -62,10 +51,6 @@ class LibavEncoder : public Encoder {
 
     QuietLog quiet_;
     const Codec* codec_;
-    Convert convert_;
-    // The current picture. libav shares it by reference count. It is written only while nothing else holds
-    // it, so it is copied only if the encoder keeps its frames.
-    Frame frame_;
     CodecContext context_;
     CodecParameters parameters_;
     Packet packet_;
@@ -78,11 +63,6 @@ class LibavEncoder : public Encoder {
 
 /// Makes an encoder of libx264 that skips the macroblocks that are unchanged since the previous frame, for
 /// which libavcodec has no interface. Throws corda::Error (kEncoder).
-[[nodiscard]] std::unique_ptr<Encoder> make_x264_encoder(const Format& format, const VideoDef& def,
-                                                         std::int64_t first_frame, const PictureInfo& info);
-
-/// Makes an encoder of frames as the files that write_png() writes, with the metadata of `info`.
-[[nodiscard]] std::unique_ptr<Encoder> make_png_encoder(const Format& format, const VideoDef& def,
-                                                        std::int64_t first_frame, const PictureInfo& info);
+[[nodiscard]] std::unique_ptr<Encoder> make_x264_encoder(const Format& format, const VideoDef& def);
 
 }  // namespace corda::media

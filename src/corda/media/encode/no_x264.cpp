@@ -9,8 +9,7 @@ std::string x264_version() {
     return {};
 }
 
-std::unique_ptr<Encoder> make_x264_encoder(const Format& /*format*/, const VideoDef& /*def*/,
-                                           std::int64_t /*first_frame*/, const PictureInfo& /*info*/) {
+std::unique_ptr<Encoder> make_x264_encoder(const Format& /*format*/, const VideoDef& /*def*/) {
     throw Error(ExitCode::kEncoder, "this Corda was built without libx264");
 }
 

@@ -80,22 +80,17 @@ void convert_pixels(const Image& image, const PixelRect& part, AVFrame& frame) {
     convert_to_yuv444(image, inside, bits, planes);
 }
 
-bool copy_exact(const AVFrame& frame, Image& picture) {
-    const AVPixFmtDescriptor* const descriptor =
-        av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
-    const auto pixel = descriptor == nullptr ? std::nullopt : packed_pixel(*descriptor);
-    if (!pixel) return false;
-    if (picture.width() != frame.width || picture.height() != frame.height)
-        picture = Image(frame.width, frame.height);
-    for (int y = 0; y < frame.height; ++y) {
-        const std::uint8_t* from = frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0];
-        std::uint8_t* to = picture.pixel(0, y);
-        for (int x = 0; x < frame.width; ++x, from += pixel->bytes, to += 4) {
-            for (int c = 0; c < 3; ++c) to[c] = from[pixel->offset[c]];
-            to[3] = pixel->has_alpha ? from[pixel->offset[3]] : 255;
-        }
-    }
-    return true;
+Frame new_frame(AVPixelFormat format, int width, int height) {
+    Frame frame = check_allocated(Frame(av_frame_alloc()), "a frame");
+    frame->format = format;
+    frame->width = width;
+    frame->height = height;
+    frame->sample_aspect_ratio = {1, 1};
+    set_duration(*frame, 1);
+    set_colors(format, *frame);
+    frame->chroma_location = chroma_location(format);
+    check_libav(av_frame_get_buffer(frame.get(), 0), ExitCode::kTemporary, "cannot make a picture");
+    return frame;
 }
 
 void AlphaBleed::search_row(const Image& image, int y, const PixelRect& grown, Found* row) const {

@@ -14,9 +14,8 @@ namespace corda::media {
 /// corda::Error (kInternal) for other formats.
 void convert_pixels(const Image& image, const PixelRect& part, AVFrame& frame);
 
-/// Copies a frame of packed R'G'B' of 8 bits to a picture, which gets its size; returns false for another
-/// pixel format.
-[[nodiscard]] bool copy_exact(const AVFrame& frame, Image& picture);
+/// A frame with room for its pixels, and with the tags of its pixel format. Throws corda::Error (kTemporary).
+[[nodiscard]] Frame new_frame(AVPixelFormat format, int width, int height);
 
 /// Sets the colour tags that a frame or a context of this pixel format gets: BT.709 in limited range with the
 /// sRGB transfer, or sRGB in R'G'B'.

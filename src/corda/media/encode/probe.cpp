@@ -4,16 +4,18 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <new>
 #include <optional>
+#include <utility>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/child_process.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/workers.hpp"
 #include "corda/media/encode/encoder.hpp"
-#include "corda/media/encode/resources.hpp"
+#include "corda/media/encode/pixels.hpp"
 #include "corda/media/format/format.hpp"
 
 namespace corda::media {
@@ -40,17 +42,18 @@ VideoDef small_video(const VideoDef& like) {
     return def;
 }
 
-/// Encodes a picture by `jobs` encoders that are open at a time; returns what failed.
-std::string encode_one(const Format& format, const VideoDef& def, int jobs) {
-    const Image image(def.width_px, def.height_px);
+/// Encodes a picture; returns what failed.
+std::string encode_one(const Format& given, const VideoDef& def) {
     const auto ignore = [](AVPacket&) {};
+    Format format = given;
+    if (format.ending->kind == FileKind::kAnimation) format.pixel_format = "pal8";
     try {
-        std::vector<std::unique_ptr<Encoder>> encoders;
-        for (int i = 0; i < jobs; ++i) {
-            encoders.push_back(make_encoder(format, def));
-            encoders.back()->encode(image, {image.rect()}, ignore);
-        }
-        for (const auto& encoder : encoders) encoder->drain(ignore);
+        const auto encoder = make_encoder(format, def);
+        Frame frame = new_frame(av_get_pix_fmt(format.pixel_format), def.width_px, def.height_px);
+        for (AVBufferRef* const buffer : frame->buf)
+            if (buffer != nullptr) std::memset(buffer->data, 0, buffer->size);
+        encoder->encode(std::move(frame), {}, ignore);
+        encoder->drain(ignore);
     } catch (const std::bad_alloc&) {
         return std::string(format.codec->name) + " got no memory";
     } catch (const std::exception& error) {
@@ -66,13 +69,13 @@ struct Trial {
 
 /// Tries an encoder in a child process with a time limit, which other threads rule out: see run_in_child.
 /// With a limited address space the encoders have what drawing will leave of it, and their own size.
-Trial try_encoders(const Format& format, const VideoDef& video, int jobs, std::uint64_t kept_bytes) {
+Trial try_encoder(const Format& format, const VideoDef& video, std::uint64_t kept_bytes) {
     const auto left = address_space_left();  // first, as threads leave some of it to the allocator
     if (std::string lack = lack_of_threads(*format.codec); !lack.empty()) return {std::move(lack), true};
     const VideoDef def = left ? video : small_video(video);
     ChildLimits limits{std::uint64_t{1} << 46U, std::int64_t{60}, kMaxS};
-    if (left) limits.memory_bytes = *left - std::min(*left, kept_bytes * static_cast<std::uint64_t>(jobs));
-    const auto work = [&] { return encode_one(format, def, jobs); };
+    if (left) limits.memory_bytes = *left - std::min(*left, kept_bytes);
+    const auto work = [&] { return encode_one(format, def); };
     const auto end = run_in_child(work, limits);
     const auto starts_threads = [&] { return can_start_threads(1 + format.codec->own_threads); };
     if (!end && starts_threads()) return {};
@@ -93,9 +96,7 @@ Trial try_encoders(const Format& format, const VideoDef& video, int jobs, std::u
         trial.failure += fmt::format(
             "; {} KiB of address space are left (ulimit -v){}: raise the limit, or choose a smaller size",
             *left >> 10U,
-            kept_bytes == 0 ? ""
-                            : fmt::format(", and drawing needs some {}",
-                                          (kept_bytes >> 10U) * static_cast<std::uint64_t>(jobs)));
+            kept_bytes == 0 ? "" : fmt::format(", and drawing needs some {}", kept_bytes >> 10U));
         trial.is_temporary = true;
     } else if (!starts_threads()) {
         trial.failure +=
@@ -105,14 +106,6 @@ Trial try_encoders(const Format& format, const VideoDef& video, int jobs, std::u
         trial.failure += "; try again on a less busy machine, or another codec";
         trial.is_temporary = true;
     }
-    return trial;
-}
-
-/// As try_encoders(). A render takes as few jobs as its memory asks for, so one that encodes is enough.
-Trial try_encoder(const Format& format, const VideoDef& video, std::uint64_t kept_bytes) {
-    const int jobs = address_space_left() ? jobs_of(video.encoder.jobs) : 1;
-    Trial trial = try_encoders(format, video, jobs, kept_bytes);
-    if (!trial.failure.empty() && jobs > 1) trial = try_encoders(format, video, 1, kept_bytes);
     return trial;
 }
 
@@ -128,16 +121,11 @@ Trial reason_of(const Ending& ending, const Codec& codec) {
     } catch (const Error& error) {
         return {error.what(), false};
     }
-    def.encoder.jobs = 1;
-    Trial trial = has_other_threads() ? Trial{encode_one(*format, def, 1)} : try_encoder(*format, def, 0);
+    if (codec.is_built_in) return {};
+    Trial trial = has_other_threads() ? Trial{encode_one(*format, def)} : try_encoder(*format, def, 0);
     if (!trial.failure.empty()) return trial;
-    const Codec& finished = format->finished_codec();
-    if (*ending.muxer != '\0' && !finished.is_built_in &&
-        av_guess_format(ending.muxer, nullptr, nullptr) == nullptr)
+    if (*ending.muxer != '\0' && av_guess_format(ending.muxer, nullptr, nullptr) == nullptr)
         return {"this libavformat does not write " + std::string(ending.words)};
-    if (finished.write != nullptr && !finished.is_built_in &&
-        avcodec_find_encoder_by_name(finished.name) == nullptr)
-        return {"this libavcodec was built without " + std::string(finished.name)};
     return {};
 }
 
@@ -149,9 +137,7 @@ std::vector<EncoderProbe> probe_encoders() {
         for (const char* const name : ending.codecs) {
             if (name == nullptr) continue;
             const auto [reason, is_temporary] = reason_of(ending, *find_codec(name));
-            const bool is_animation = ending.kind == FileKind::kAnimation;
-            probes.push_back(
-                {ending.text, is_animation ? ending.muxer : name, reason.empty(), is_temporary, reason});
+            probes.push_back({ending.text, name, reason.empty(), is_temporary, reason});
         }
     }
     return probes;

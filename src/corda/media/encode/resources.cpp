@@ -49,7 +49,7 @@ int jobs_of(int asked) {
 
 DiskNeed disk_need(const Format& format, const VideoDef& def, std::int64_t frames) {
     if (format.ending->kind == FileKind::kStream) return {};
-    const DiskBytes& bytes = format.finished_codec().disk_bytes;
+    const DiskBytes& bytes = format.codec->disk_bytes;
     // The smaller a picture, the larger the share of its pixels that lines cover.
     constexpr double kMeasuredPixels = 640.0 * 360.0;
     const double pixels = static_cast<double>(def.width_px) * def.height_px;

@@ -2,11 +2,8 @@
 #include "corda/media/encode/encoder.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <cassert>
 #include <cstdarg>
 #include <cstdint>
 #include <cstdlib>
@@ -14,17 +11,14 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
+#include <utility>
 
 extern "C" {
 #include <x264.h>
 }
 
-#include "corda/media/chunks/chunk.hpp"
 #include "corda/media/encode/pixels.hpp"
-#include "corda/media/encode/yuv420.hpp"
 #include "corda/media/libav_handles.hpp"
-#include "corda/media/read/color_patch.hpp"
 
 namespace corda::media {
 namespace {
@@ -57,6 +51,12 @@ void set_rate(x264_param_t& params, int crf) {
     params.rc.i_qp_constant = std::max(1, crf - kQuantizerBelowCrf);  // 0 would be lossless, which few play
 }
 
+/// A key frame at each multiple of the interval, and nowhere else: a drawing has no cuts to be found.
+void set_key_frames(x264_param_t& params, int interval) {
+    params.i_keyint_max = interval;
+    params.i_scenecut_threshold = 0;
+}
+
 x264_param_t make_params(const Format& format, const VideoDef& def) {
     x264_param_t params;
     const std::string preset = format.preset_of(def.encoder);
@@ -83,7 +83,7 @@ x264_param_t make_params(const Format& format, const VideoDef& def) {
     params.b_vfr_input = 0;
     params.i_fps_num = static_cast<std::uint32_t>(fps.num);
     params.i_fps_den = static_cast<std::uint32_t>(fps.den);
-    params.i_keyint_max = static_cast<int>(frames_per_chunk(format, def.fps));
+    set_key_frames(params, key_interval(def.fps));
     params.b_repeat_headers = 0;
     set_rate(params, format.crf_of(def.encoder));
     // B-frames do not pay for motion before a ground that stands still: without them a video takes a
@@ -97,22 +97,12 @@ x264_param_t make_params(const Format& format, const VideoDef& def) {
     return params;
 }
 
-Frame make_frame(const Format& format, const VideoDef& def) {
-    Frame frame = check_allocated(Frame(av_frame_alloc()), "a frame");
-    frame->format = av_get_pix_fmt(format.pixel_format);
-    frame->width = def.width_px;
-    frame->height = def.height_px;
-    check_libav(av_frame_get_buffer(frame.get(), 0), ExitCode::kTemporary, "cannot make a picture");
-    return frame;
-}
-
 class X264Encoder : public Encoder {
   public:
     X264Encoder(const Format& format, const VideoDef& def)
         : columns_(macroblocks(def.width_px)),
           rows_(macroblocks(def.height_px)),
-          frame_(make_frame(format, def)),
-          kept_(kMacroblockBytes * static_cast<std::size_t>(columns_)),
+          pixel_format_(av_get_pix_fmt(format.pixel_format)),
           parameters_(check_allocated(CodecParameters(avcodec_parameters_alloc()), "codec parameters")),
           packet_(check_allocated(Packet(av_packet_alloc()), "a packet")) {
         const LogCapture log;
@@ -127,32 +117,27 @@ class X264Encoder : public Encoder {
                         format.crf_of(def.encoder), reason);
         }
         csp_ = params.i_csp;
-        tolerance_ = patch_tolerance(format.crf_of(def.encoder), csp_ == X264_CSP_I444);
         describe(def);
     }
 
-    void encode(const Image& frame, const Damage& damage, const PacketSink& sink) override {
-        assert(frame.width() == frame_->width && frame.height() == frame_->height);
+    void encode(Frame frame, const Damage& changed, const PacketSink& sink) override {
         x264_picture_t picture;
         x264_picture_init(&picture);
         picture.i_pts = frames_;
         picture.img.i_csp = csp_;
         picture.img.i_plane = kPlanes;
         for (int plane = 0; plane < kPlanes; ++plane) {
-            picture.img.plane[plane] = frame_->data[plane];
-            picture.img.i_stride[plane] = frame_->linesize[plane];
+            picture.img.plane[plane] = frame->data[plane];
+            picture.img.i_stride[plane] = frame->linesize[plane];
         }
-        if (frames_ == 0) {
-            convert_pixels(frame, frame.rect(), *frame_);
-        } else {
-            picture.prop.mb_info = convert(frame, damage);
+        if (last_) {
+            picture.prop.mb_info = constant_macroblocks(*frame, changed);
             picture.prop.mb_info_free = &std::free;
         }
+        last_ = std::move(frame);
         encode(&picture, sink);
         ++frames_;
     }
-
-    void expect(const std::vector<ColorPatch>& patches) override { expected_ = {frames_, patches}; }
 
     void drain(const PacketSink& sink) override {
         while (x264_encoder_delayed_frames(x264_.get()) > 0) encode(nullptr, sink);
@@ -162,7 +147,6 @@ class X264Encoder : public Encoder {
 
   private:
     static constexpr int kPlanes = 3;
-    static constexpr std::size_t kMacroblockBytes = std::size_t{kPlanes} * kMacroblockPx * kMacroblockPx;
 
     /// Fills `parameters_`: all from the definition but the stream's headers. x264's own words (SEI) go
     /// before the first packet, as libavcodec puts them.
@@ -170,7 +154,7 @@ class X264Encoder : public Encoder {
         AVCodecParameters& out = *parameters_;
         out.codec_type = AVMEDIA_TYPE_VIDEO;
         out.codec_id = AV_CODEC_ID_H264;
-        out.format = frame_->format;
+        out.format = pixel_format_;
         out.width = def.width_px;
         out.height = def.height_px;
         out.sample_aspect_ratio = {1, 1};
@@ -178,7 +162,7 @@ class X264Encoder : public Encoder {
         out.color_space = AVCOL_SPC_BT709;
         out.color_primaries = AVCOL_PRI_BT709;
         out.color_trc = AVCOL_TRC_IEC61966_2_1;
-        out.chroma_location = chroma_location(static_cast<AVPixelFormat>(frame_->format));
+        out.chroma_location = chroma_location(pixel_format_);
         x264_nal_t* nals = nullptr;
         int count = 0;
         if (x264_encoder_headers(x264_.get(), &nals, &count) < 0)
@@ -201,77 +185,41 @@ class X264Encoder : public Encoder {
         std::copy(headers.begin(), headers.end(), out.extradata);
     }
 
-    /// Brings `frame_` up to date. Returns a flag for each macroblock, from malloc(): whether its samples
-    /// stay as they were. By samples, not by damage, so that the bytes of a video do not depend on how its
-    /// frames are drawn.
-    std::uint8_t* convert(const Image& frame, const Damage& damage) {
+    /// A flag for each macroblock, from malloc(): whether its samples are those of the last frame, from which
+    /// the frame differs within `changed` at most. By samples, not by damage, so that the bytes of a video do
+    /// not depend on how its frames are drawn.
+    [[nodiscard]] std::uint8_t* constant_macroblocks(const AVFrame& frame, const Damage& changed) const {
         const std::size_t count = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
         std::unique_ptr<std::uint8_t, void (*)(void*)> flags(static_cast<std::uint8_t*>(std::malloc(count)),
                                                              &std::free);
         if (!flags) throw Error(ExitCode::kTemporary, "out of memory for an encoder's flags");
         std::memset(flags.get(), X264_MBINFO_CONSTANT, count);
-        for (const PixelRect& part : damage) {
+        for (const PixelRect& part : changed) {
             // A chroma sample takes from the column before it, too.
-            const int first = std::max(0, part.x0 / kMacroblockPx);
-            const int last = std::min(macroblocks(part.x1 + 1), columns_);
-            for (int y = std::max(0, part.y0 / kMacroblockPx); y < std::min(macroblocks(part.y1), rows_);
-                 ++y) {
-                const PixelRect row{0, y * kMacroblockPx, frame_->width, (y + 1) * kMacroblockPx};
-                keep(first, last, y);
-                convert_pixels(frame, part.intersected(row), *frame_);
-                for (int x = first; x < last; ++x)
-                    if (!is_kept(first, x, y)) flags.get()[std::ptrdiff_t{y} * columns_ + x] = 0;
-            }
+            const int end = std::min(macroblocks(part.x1 + 1), columns_);
+            for (int y = std::max(0, part.y0 / kMacroblockPx); y < std::min(macroblocks(part.y1), rows_); ++y)
+                for (int x = std::max(0, part.x0 / kMacroblockPx); x < end; ++x)
+                    if (!is_constant(frame, x, y)) flags.get()[std::ptrdiff_t{y} * columns_ + x] = 0;
         }
         return flags.release();
     }
 
-    /// A row of a plane of a macroblock.
-    struct Line {
-        std::uint8_t* samples;
-        std::size_t bytes;
-    };
-
-    /// Calls `visit` with the lines of a macroblock until one gives false; returns whether none did.
-    template <class Visit>
-    bool for_each_line(int column, int row, const Visit& visit) const {
+    /// Whether a macroblock has the samples of the last frame.
+    [[nodiscard]] bool is_constant(const AVFrame& frame, int column, int row) const {
         for (int plane = 0; plane < kPlanes; ++plane) {
             const int shift = plane > 0 && csp_ == X264_CSP_I420 ? 1 : 0;
             const int side = kMacroblockPx >> shift;
             const int x = column * side;
-            const auto bytes = static_cast<std::size_t>(std::min(side, (frame_->width >> shift) - x));
-            const int y1 = std::min((row + 1) * side, frame_->height >> shift);
+            const auto bytes = static_cast<std::size_t>(std::min(side, (frame.width >> shift) - x));
+            const int y1 = std::min((row + 1) * side, frame.height >> shift);
             for (int y = row * side; y < y1; ++y) {
-                const Line line{frame_->data[plane] + std::ptrdiff_t{y} * frame_->linesize[plane] + x, bytes};
-                if (!visit(line)) return false;
+                const std::uint8_t* const now = frame.data[plane] + std::ptrdiff_t{y} * frame.linesize[plane];
+                const std::uint8_t* const before =
+                    last_->data[plane] + std::ptrdiff_t{y} * last_->linesize[plane];
+                if (std::memcmp(now + x, before + x, bytes) != 0) return false;
             }
         }
         return true;
-    }
-
-    /// Copies some macroblocks of a row to kept_.
-    void keep(int first, int last, int row) {
-        for (int column = first; column < last; ++column) {
-            std::uint8_t* to = kept_of(first, column);
-            for_each_line(column, row, [&to](const Line& line) {
-                to = std::copy_n(line.samples, line.bytes, to);
-                return true;
-            });
-        }
-    }
-
-    /// Whether a macroblock is as it was when those from `first` on were kept.
-    bool is_kept(int first, int column, int row) {
-        const std::uint8_t* from = kept_of(first, column);
-        return for_each_line(column, row, [&from](const Line& line) {
-            const bool is_equal = std::memcmp(line.samples, from, line.bytes) == 0;
-            from += line.bytes;
-            return is_equal;
-        });
-    }
-
-    std::uint8_t* kept_of(int first, int column) {
-        return &kept_[kMacroblockBytes * static_cast<std::size_t>(column - first)];
     }
 
     /// Encodes a picture, or delayed ones if it is null.
@@ -286,7 +234,6 @@ class X264Encoder : public Encoder {
             throw_error(ExitCode::kEncoder, "libx264 failed near frame {}{}", frames_, reason);
         }
         if (bytes == 0) return;
-        if (shown.i_pts == expected_.frame) compare(shown.img);
         check_libav(av_new_packet(packet_.get(), static_cast<int>(sei_.size()) + bytes), ExitCode::kTemporary,
                     "cannot make a packet");
         std::uint8_t* const end = std::copy(sei_.begin(), sei_.end(), packet_->data);
@@ -299,50 +246,17 @@ class X264Encoder : public Encoder {
         sink(*packet_);
     }
 
-    /// Checks that a decoder will show the drawn colours: x264 gives the picture as it has decoded it.
-    void compare(const x264_image_t& shown) const {
-        for (const ColorPatch& patch : expected_.patches) {
-            const std::array<double, 3> rgb = mean_rgb(shown, patch);
-            if (patch_error(patch, rgb) <= tolerance_) continue;
-            throw_error(ExitCode::kEncoder,
-                        "libx264 shows R'G'B' {:.1f} {:.1f} {:.1f} at ({}, {}) where {} was drawn; try "
-                        "another preset or crf",
-                        rgb[0], rgb[1], rgb[2], patch.x, patch.y, fmt::join(patch.rgb, " "));
-        }
-    }
-
-    /// Mean R'G'B' of a square of a picture of x264's own.
-    [[nodiscard]] std::array<double, 3> mean_rgb(const x264_image_t& shown, const ColorPatch& patch) const {
-        const int chroma_shift = csp_ == X264_CSP_I420 ? 1 : 0;
-        // Of 4:2:0 the samples of Cb and Cr take turns in one plane.
-        const auto mean = [&](int plane, int shift, int first, int step) {
-            const int side = kPatchSide >> shift;
-            std::int64_t sum = 0;
-            for (int y = 0; y < side; ++y) {
-                const std::uint8_t* const row =
-                    shown.plane[plane] + std::ptrdiff_t{(patch.y >> shift) + y} * shown.i_stride[plane];
-                for (int x = 0; x < side; ++x) sum += row[((patch.x >> shift) + x) * step + first];
-            }
-            return static_cast<double>(sum) / (side * side);
-        };
-        const bool takes_turns = chroma_shift == 1;
-        return rgb_from_ycbcr(mean(0, 0, 0, 1), mean(1, chroma_shift, 0, takes_turns ? 2 : 1),
-                              takes_turns ? mean(1, chroma_shift, 1, 2) : mean(2, chroma_shift, 0, 1));
-    }
-
     QuietLog quiet_;
     int columns_;  ///< of macroblocks
     int rows_;
-    Frame frame_;
-    std::vector<std::uint8_t> kept_;  ///< macroblocks of a row, before they are converted
+    AVPixelFormat pixel_format_;
+    Frame last_;  ///< the frame before
     CodecParameters parameters_;
     Packet packet_;
     X264 x264_;
     int csp_ = 0;
     std::string sei_;
     std::int64_t frames_ = 0;
-    FrameColors expected_{-1, {}};
-    double tolerance_ = 0.0;  ///< of their patches
 };
 
 }  // namespace
@@ -351,8 +265,7 @@ std::string x264_version() {
     return fmt::format("libx264 {}", X264_BUILD);
 }
 
-std::unique_ptr<Encoder> make_x264_encoder(const Format& format, const VideoDef& def,
-                                           std::int64_t /*first_frame*/, const PictureInfo& /*info*/) {
+std::unique_ptr<Encoder> make_x264_encoder(const Format& format, const VideoDef& def) {
     return std::make_unique<X264Encoder>(format, def);
 }
 

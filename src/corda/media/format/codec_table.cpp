@@ -5,7 +5,6 @@
 #include <span>
 #include <string>
 
-#include "corda/media/animation/animation.hpp"
 #include "corda/media/encode/encoder.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/media/libav_handles.hpp"
@@ -23,10 +22,6 @@ constexpr std::array kNvencPresets{"p1", "p2", "p3", "p4", "p5", "p6", "p7"};
 constexpr std::array kSpeeds{"0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13"};
 constexpr std::span<const char* const> kSpeedsTo8{kSpeeds.data(), 9};
 
-/// Chunk length of codecs whose frames stand alone: short chunks take less memory and lose less.
-constexpr int kFewFrames = 12;
-/// Chunk length of FFV1, whose encoder clears 148 bytes per pixel when it opens.
-constexpr int kFfv1Frames = 36;
 /// FFV1 splits a picture into 2x2 slices.
 constexpr int kMinFfv1SidePx = 2;
 /// Limit of SVT-AV1; AV1 allows more.
@@ -212,7 +207,6 @@ constexpr std::array kCodecs{
           .own_threads = 2,
           .job_bytes = 210,
           .disk_bytes = {9e-5, 0.0028},
-          .verifies_all = true,
           .has_coarse_444 = true,
           .players = kH265Players,
           .options = &x265_options},
@@ -231,7 +225,6 @@ constexpr std::array kCodecs{
           .own_threads = 16,
           .job_bytes = 230,
           .disk_bytes = {4e-5, 0.0023},
-          .verifies_all = true,
           .players = kAv1Players,
           .levels = kAv1Levels,
           .options = &svt_av1_options},
@@ -246,7 +239,6 @@ constexpr std::array kCodecs{
           .default_crf = 20,
           .min_side_px = 16,
           .disk_bytes = {4e-5, 0.0023},
-          .verifies_all = true,
           .options = &aom_av1_options},
     Codec{.name = "libvpx-vp9",
           .short_name = "vp9",
@@ -260,7 +252,6 @@ constexpr std::array kCodecs{
           .default_crf_of_alpha = kVp9AlphaCrf,
           .job_bytes = 155,
           .disk_bytes = {4e-5, 0.0026},
-          .verifies_all = true,
           .players = kVp9Players,
           .levels = kVp9Levels,
           .options = &vp9_options},
@@ -282,7 +273,6 @@ constexpr std::array kCodecs{
           .standard = "ProRes 4444",
           .stream = "prores",
           .pixel_formats = {"yuv444p10le", "yuva444p10le"},
-          .chunk_frames = kFewFrames,
           .job_bytes = 22,
           .disk_bytes = {0.01, 0.31},
           .players = kProresPlayers,
@@ -293,44 +283,34 @@ constexpr std::array kCodecs{
           .stream = "ffv1",
           .pixel_formats = {"bgr0", "bgra"},
           .min_side_px = kMinFfv1SidePx,
-          .chunk_frames = kFfv1Frames,
           .job_bytes = 185,
           .disk_bytes = {0.0015, 0.16},
           .players = kFfv1Players,
           .options = &ffv1_options},
-    Codec{.name = "qtrle",
-          .short_name = "rle",
-          .standard = "QuickTime Animation",
-          .stream = "qtrle",
-          .pixel_formats = {"rgb24", "argb"},
-          .job_bytes = 50},
     Codec{.name = "png",
           .short_name = "png",
           .standard = "PNG",
           .stream = "png",
           .pixel_formats = {"rgba"},
-          .chunk_frames = kFewFrames,
           .is_built_in = true,
           .job_bytes = 11,
-          .disk_bytes = {0.001, 0.053},
-          .make = &make_png_encoder},
+          .disk_bytes = {0.001, 0.053}},
     Codec{.name = "rawvideo",
           .short_name = "raw",
           .standard = "raw pictures",
           .stream = "rawvideo",
           .pixel_formats = {"yuv420p", "yuv444p", "rgba"},
-          .chunk_frames = 2,
+          .is_built_in = true,
           .job_bytes = 18,
           .players = kRawPlayers},
     Codec{.name = "gif",
           .short_name = "gif",
           .standard = "GIF",
           .stream = "gif",
-          .pixel_formats = {"pal8"},
+          .pixel_formats = {"rgba"},
           .disk_bytes = {2e-4, 0.016},
           .tolerance = kGifTolerance,
-          .players = kGifPlayers,
-          .write = &write_gif},
+          .players = kGifPlayers},
 };
 
 }  // namespace

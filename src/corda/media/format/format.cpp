@@ -24,7 +24,7 @@ constexpr std::array kEndings{
     Ending{".webm", "WebM", FileKind::kVideo, "webm", {"libvpx-vp9", "libsvtav1", "libaom-av1"}},
     Ending{".mov", "QuickTime", FileKind::kVideo, "mov", {"prores_ks"}},
     Ending{".mkv", "Matroska", FileKind::kVideo, "matroska", {"ffv1"}},
-    Ending{".gif", "GIF", FileKind::kAnimation, "gif", {"qtrle"}},
+    Ending{".gif", "GIF", FileKind::kAnimation, "gif", {"gif"}},
     Ending{"%04d.png", "PNG pictures", FileKind::kPictures, "", {"png"}},
     Ending{"-", "YUV4MPEG2", FileKind::kStream, "", {"rawvideo"}},
 };
@@ -213,11 +213,7 @@ std::string Format::words() const {
 }
 
 std::string Format::encoder_name() const {
-    return finished_codec().name;
-}
-
-const Codec& Format::finished_codec() const {
-    return ending->kind == FileKind::kAnimation ? *find_codec(ending->muxer) : *codec;
+    return codec->name;
 }
 
 std::string Format::library_versions() const {

@@ -14,14 +14,9 @@
 #include "corda/core/image.hpp"
 #include "corda/media/defs.hpp"
 
-namespace corda {
-class OutputFile;
-}
-
 namespace corda::media {
 
 class Encoder;
-struct AnimationDef;
 struct Ending;
 struct Format;
 
@@ -32,8 +27,7 @@ using EncoderOptions = std::vector<std::pair<const char*, std::string>>;
 using PictureInfo = std::function<PngInfo(std::int64_t frame)>;
 
 /// Makes an encoder of libav by Codec::options.
-[[nodiscard]] std::unique_ptr<Encoder> make_libav_encoder(const Format& format, const VideoDef& def,
-                                                          std::int64_t first_frame, const PictureInfo& info);
+[[nodiscard]] std::unique_ptr<Encoder> make_libav_encoder(const Format& format, const VideoDef& def);
 
 /// Programs that play a codec of a pixel format in some containers.
 struct Players {
@@ -73,8 +67,6 @@ struct Codec {
     int default_crf_of_alpha = 0;  ///< in place of default_crf for transparent videos; 0: the same
     int min_side_px = 1;
     int max_height_px = kMaxSidePx;
-    /// Most frames of a chunk, for codecs whose frames stand alone; 0: as many as frames_per_chunk() says.
-    int chunk_frames = 0;
     bool is_hardware = false;  ///< it may be listed and not work
     bool is_built_in = false;  ///< it needs neither libav nor x264
     bool must_drain = false;   ///< closing it waits forever, unless a stream was begun and ended
@@ -84,25 +76,20 @@ struct Codec {
     int job_bytes = 240;
     std::span<const int> preset_job_bytes{};  ///< the same for each of `presets`, if they differ
     DiskBytes disk_bytes{};
-    bool verifies_all = false;           ///< decoding all frames takes a small part of the time of encoding
     double tolerance = 0.0;              ///< largest error of a colour patch, in 1/255; 0: patch_tolerance()
     bool has_coarse_444 = false;         ///< it quantises the colour of 4:4:4 more coarsely
     std::span<const Players> players{};  ///< of codecs of one stream, the first has them
     std::span<const Level> levels{};     ///< the same, the lowest first
     int level_block_px = 1;              ///< side of the blocks that `levels` count
-    std::unique_ptr<Encoder> (*make)(const Format& format, const VideoDef& def, std::int64_t first_frame,
-                                     const PictureInfo& info) = &make_libav_encoder;
+    std::unique_ptr<Encoder> (*make)(const Format& format, const VideoDef& def) = &make_libav_encoder;
     EncoderOptions (*options)(const Format& format, const VideoDef& def) = nullptr;  ///< null: none
     std::string (*version)() = nullptr;  ///< of an encoder that is not libav's; gives "" if it is missing
-    /// Makes an animation of the lossless pictures of chunks.
-    void (*write)(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
-                  OutputFile& output) = nullptr;
 };
 
 /// How the packets of a video become files.
 enum class FileKind {
-    kVideo,      ///< one file with the packets of the chunks
-    kAnimation,  ///< one file made of the lossless pictures of the chunks: its encoder needs the whole film
+    kVideo,      ///< one file, encoded frame by frame
+    kAnimation,  ///< one file, whose encoder needs the whole film
     kPictures,   ///< a file for each frame
     kStream,     ///< standard output
 };
@@ -112,8 +99,8 @@ struct Ending {
     const char* text;   ///< ".mp4"; "-" is standard output
     const char* words;  ///< "MP4"
     FileKind kind;
-    const char* muxer;  ///< libav's name; of an animation also its codec's
-    /// libav's names of the codecs that it takes, the default first; of an animation, what its chunks hold.
+    const char* muxer;  ///< libav's name
+    /// libav's names of the codecs that it takes, the default first.
     std::array<const char*, 5> codecs;
 };
 
@@ -124,12 +111,10 @@ struct Ending {
 struct Format {
     const Ending* ending = nullptr;
     const Codec* codec = nullptr;
-    const char* pixel_format = "";  ///< libav's name
+    const char* pixel_format = "";  ///< libav's name; of a GIF that of the frames before they get its palette
     bool has_alpha = false;
     bool is_fallback = false;  ///< the ending's own codec is missing
 
-    /// The codec of the finished file: of an animation, not that of its chunks.
-    [[nodiscard]] const Codec& finished_codec() const;
     [[nodiscard]] std::string preset_of(const EncoderDef& def) const;
     [[nodiscard]] int crf_of(const EncoderDef& def) const;
     /// "H.264 in MP4", "GIF".

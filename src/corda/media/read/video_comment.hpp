@@ -1,22 +1,12 @@
 #pragma once
 
-#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/rational.hpp"
-#include "corda/media/verify/verify.hpp"
 
-namespace corda {
-
-void to_json(nlohmann::json& json, const Rational& value);
-void from_json(const nlohmann::json& json, Rational& value);
-
-namespace media {
+namespace corda::media {
 
 /// The largest JSON text that is read from a file, in bytes, and how deeply it may be nested. Corda writes
 /// less: QuickTime's comments end at this size, and the deepest value in one is at level 5.
@@ -32,21 +22,6 @@ inline constexpr int kDeepestJsonLevel = 16;
 /// that is no JSON.
 [[nodiscard]] std::string comment_problem(std::string_view comment);
 
-// What the comment of a video tells, a JSON object of any origin.
-
-/// The rate; std::nullopt if there is none that libav can count with.
-[[nodiscard]] std::optional<Rational> comment_rate(const std::string& comment);
-/// A whole number; std::nullopt if it is something else.
-[[nodiscard]] std::optional<std::int64_t> comment_number(const std::string& comment, const char* key);
-/// The colour patches of a key: "patches" are those of the first frame.
-[[nodiscard]] std::vector<ColorPatch> comment_patches(const std::string& comment,
-                                                      const char* key = "patches");
-/// The comment of a chunk, with the colours of its first and its last frame.
-[[nodiscard]] std::string chunk_comment(const std::vector<FrameColors>& colors);
-/// The comment of a finished video: with the number of its frames and the colours of the first one.
-[[nodiscard]] std::string finished_comment(const std::string& comment, std::int64_t frames,
-                                           const std::vector<ColorPatch>& first);
-
 /// The comment of a video of any origin, read in a child process with limits on memory and time; empty if it
 /// has none. `remedy` ends the messages. Throws corda::Error: kIo if the file cannot
 /// be read or is no video, kUsage if its comment has a comment_problem(), and what run_in_child throws, which
@@ -54,5 +29,4 @@ inline constexpr int kDeepestJsonLevel = 16;
 [[nodiscard]] std::string comment_in_child(const std::string& path,
                                            std::string_view remedy = "give a video that corda has written");
 
-}  // namespace media
-}  // namespace corda
+}  // namespace corda::media

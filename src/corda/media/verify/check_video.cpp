@@ -101,7 +101,7 @@ std::vector<Patch> patches_of(const Image& picture) {
 
 /// The largest error that a channel of a patch may have in a correct video, in 1/255.
 double tolerance_of(const Format& format, const EncoderDef& def) {
-    const Codec& codec = format.finished_codec();
+    const Codec& codec = *format.codec;
     if (codec.tolerance > 0.0) return codec.tolerance;
     if (!codec.crf) return 2.0;
     constexpr int kMaxCrf = 51;
@@ -144,7 +144,7 @@ void check_colors(const AVFrame& frame, const Expected& expected) {
     const AVPixFmtDescriptor& format = descriptor_of(frame);
     for (const Patch& patch : patches_of(expected.first)) {
         // A GIF has no colour where it is transparent.
-        const bool is_gif = expected.format.finished_codec().stream == std::string_view("gif");
+        const bool is_gif = expected.format.codec->stream == std::string_view("gif");
         if (is_gif && mean_of(frame, 3, patch) < 255.0) continue;
         const double a = mean_of(frame, 0, patch);
         const double b = mean_of(frame, 1, patch);

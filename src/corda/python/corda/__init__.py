@@ -308,10 +308,10 @@ class Film:
     def save(self, path, *, force=False, resume=False, on_progress=None):
         """Renders the video; the extension of `path` chooses the format. Returns the number of frames.
 
-        force: replace an existing file. resume: keep the chunks that an interrupted render of the same film has left, with the
-        bytes of an uninterrupted render; without any, start from the beginning. on_progress: called with the number of
-        finished frames and of all frames, at most every 50 ms and at the end; returning False stops, which raises Error (code
-        130) and keeps the finished frames in the folder PATH.parts. It must not use this film, which raises Error (code 2).
+        force: replace an existing file. resume: of pictures ("frames/%06d.png"), draw those that are missing or damaged.
+        on_progress: called with the number of finished frames and of all frames, at most every 50 ms and at the end; returning
+        False stops, which raises Error (code 130): there is no video then, and pictures that are finished stay. It must not use
+        this film, which raises Error (code 2).
         """
         return self._film.save(_path(path), bool(force), bool(resume), _answering(on_progress))
 

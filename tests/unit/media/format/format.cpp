@@ -68,7 +68,7 @@ TEST(Formats, TheEndingChoosesTheCodecAndTheGroundThePixels) {
     for (const Case& wanted :
          {Case{"a.mp4", "libx264", "yuv420p", "yuv420p"}, Case{"a.webm", "libvpx-vp9", "yuv420p", "yuva420p"},
           Case{"a.mov", "prores_ks", "yuv444p10le", "yuva444p10le"}, Case{"a.mkv", "ffv1", "bgr0", "bgra"},
-          Case{"a.gif", "qtrle", "rgb24", "argb"}, Case{"%d.png", "png", "rgba", "rgba"},
+          Case{"a.gif", "gif", "rgba", "rgba"}, Case{"%d.png", "png", "rgba", "rgba"},
           Case{"-", "rawvideo", "yuv420p", "rgba"}}) {
         for (const bool is_transparent : {false, true}) {
             const Format format = find_format(wanted.path, encoded_by(""), is_transparent);

@@ -1,4 +1,4 @@
-#include "corda/media/chunks/track_output.hpp"
+#include "corda/media/write/track_output.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -101,7 +101,6 @@ TrackOutput::TrackOutput(const OutputFile& output, const char* container, const 
     stream->time_base = frame_base_;
     stream->avg_frame_rate = to_libav(info.fps);
 
-    if (has_old_header()) format_->metadata_header_padding = kNewMatroskaBytes;
     Options options;
     set_options(container, info, options);
     check_libav(avformat_write_header(format_.get(), options.get()), kIo,
@@ -135,18 +134,6 @@ void TrackOutput::finish() {
     check_libav(av_write_trailer(format_.get()), kIo, what);
     avio_flush(io_.get());
     check_libav(io_->error, kIo, what);
-    if (has_old_header()) renew_header(what);
-}
-
-bool TrackOutput::has_old_header() const {
-    return kHasOldMatroska && std::string_view(format_->oformat->name) == "matroska";
-}
-
-void TrackOutput::renew_header(const std::string& what) {
-    const std::string renewed = with_new_matroska_header(first_bytes(path_, kMaxMatroskaHeader));
-    check_libav(::lseek(descriptor_, 0, SEEK_SET) < 0 ? AVERROR(errno) : 0, kIo, what);
-    check_libav(AVERROR(write_all(descriptor_, renewed)), kIo, what);
-    check_libav(::lseek(descriptor_, 0, SEEK_END) < 0 ? AVERROR(errno) : 0, kIo, what);
 }
 
 }  // namespace corda::media
