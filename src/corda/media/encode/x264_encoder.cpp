@@ -118,12 +118,14 @@ class X264Encoder : public Encoder {
         }
         csp_ = params.i_csp;
         describe(def);
+        prime();
     }
 
     void encode(Frame frame, const Damage& changed, const PacketSink& sink) override {
         x264_picture_t picture;
         x264_picture_init(&picture);
-        picture.i_pts = frames_;
+        picture.i_pts = primed_ + frames_;
+        picture.i_type = frames_ == 0 ? X264_TYPE_IDR : X264_TYPE_AUTO;
         picture.img.i_csp = csp_;
         picture.img.i_plane = kPlanes;
         for (int plane = 0; plane < kPlanes; ++plane) {
@@ -185,6 +187,35 @@ class X264Encoder : public Encoder {
         std::copy(headers.begin(), headers.end(), out.extradata);
     }
 
+    /// Encodes grey pictures ahead of the film, whose packets are dropped, so that bytes do not depend on
+    /// fresh memory: with flags of macroblocks, x264's deblocking filter (x264_frame_deblock_row) reads the
+    /// strength of edges that only macroblocks predicted from another picture write, one for each column and
+    /// thread. In a picture that equals the last one, all macroblocks are.
+    void prime() {
+        x264_param_t params;
+        x264_encoder_parameters(x264_.get(), &params);
+        const Frame grey = check_allocated(Frame(av_frame_alloc()), "a frame");
+        grey->format = pixel_format_;
+        grey->width = params.i_width;
+        grey->height = params.i_height;
+        check_libav(av_frame_get_buffer(grey.get(), 0), ExitCode::kTemporary, "cannot make a picture");
+        x264_picture_t picture;
+        x264_picture_init(&picture);
+        picture.img.i_csp = csp_;
+        picture.img.i_plane = kPlanes;
+        for (int plane = 0; plane < kPlanes; ++plane) {
+            const int lines = params.i_height >> (plane > 0 && csp_ == X264_CSP_I420 ? 1 : 0);
+            std::memset(grey->data[plane], 128, static_cast<std::size_t>(grey->linesize[plane]) * lines);
+            picture.img.plane[plane] = grey->data[plane];
+            picture.img.i_stride[plane] = grey->linesize[plane];
+        }
+        primed_ = params.i_threads + 1;
+        for (picture.i_pts = 0; picture.i_pts < primed_; ++picture.i_pts) {
+            picture.i_type = picture.i_pts == 0 ? X264_TYPE_IDR : X264_TYPE_P;
+            encode(&picture, {});
+        }
+    }
+
     /// A flag for each macroblock, from malloc(): whether its samples are those of the last frame, from which
     /// the frame differs within `changed` at most. By samples, not by damage, so that the bytes of a video do
     /// not depend on how its frames are drawn.
@@ -233,14 +264,14 @@ class X264Encoder : public Encoder {
             const std::string reason = log.text().empty() ? "" : " (" + log.text() + ")";
             throw_error(ExitCode::kEncoder, "libx264 failed near frame {}{}", frames_, reason);
         }
-        if (bytes == 0) return;
+        if (bytes == 0 || shown.i_pts < primed_) return;
         check_libav(av_new_packet(packet_.get(), static_cast<int>(sei_.size()) + bytes), ExitCode::kTemporary,
                     "cannot make a packet");
         std::uint8_t* const end = std::copy(sei_.begin(), sei_.end(), packet_->data);
         std::memcpy(end, nals[0].p_payload, static_cast<std::size_t>(bytes));  // all, one after the other
         sei_.clear();
-        packet_->pts = shown.i_pts;
-        packet_->dts = shown.i_dts;
+        packet_->pts = shown.i_pts - primed_;
+        packet_->dts = shown.i_dts - primed_;
         packet_->duration = 1;
         if (shown.b_keyframe != 0) packet_->flags |= AV_PKT_FLAG_KEY;
         sink(*packet_);
@@ -257,6 +288,7 @@ class X264Encoder : public Encoder {
     int csp_ = 0;
     std::string sei_;
     std::int64_t frames_ = 0;
+    std::int64_t primed_ = 0;  ///< grey pictures
 };
 
 }  // namespace
