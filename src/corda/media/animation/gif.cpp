@@ -118,7 +118,7 @@ void GifWriter::write(const OutputFile& output, const std::function<void(std::in
         check_libav(av_frame_make_writable(frame.get()), ExitCode::kTemporary, "cannot copy a picture");
         for (Run run{}; read(&run, sizeof run), run.count > 0;) {
             read(pixels.data(), 4 * static_cast<std::size_t>(run.count));
-            palette.map(pixels.data(), run.count,
+            palette.map(pixels.data(), run.count, run.x, run.y,
                         frame->data[0] + std::ptrdiff_t{run.y} * frame->linesize[0] + run.x);
         }
         encoder.encode(check_allocated(Frame(av_frame_clone(frame.get())), "a frame"), {}, take);

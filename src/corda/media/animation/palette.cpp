@@ -27,6 +27,26 @@ std::uint64_t weight(const PaletteBin& bin) {
     return static_cast<std::uint64_t>(std::bit_width(bin.count));
 }
 
+/// The eye sees green best, blue worst.
+constexpr std::array kWeights{2, 4, 1};
+
+/// Weighted product of two differences of colours.
+int product(const std::array<int, 3>& a, const std::array<int, 3>& b) {
+    return kWeights[0] * a[0] * b[0] + kWeights[1] * a[1] * b[1] + kWeights[2] * a[2] * b[2];
+}
+
+std::array<int, 3> difference(const std::array<int, 3>& a, const Color& b) {
+    return {a[0] - b.r, a[1] - b.g, a[2] - b.b};
+}
+
+/// The rank 0 .. 63 of a pixel in its 8x8 square: every second one comes first, and so on (B. E. Bayer: An
+/// optimum method for two-level rendition of continuous-tone pictures. ICC 1973).
+int bayer(int x, int y) {
+    int rank = 0;
+    for (int bit = 0; bit < 3; ++bit) rank = 4 * rank + 2 * (((x ^ y) >> bit) & 1) + ((y >> bit) & 1);
+    return rank;
+}
+
 /// Bins first <= i < last of a list.
 struct Box {
     std::size_t first = 0;
@@ -89,16 +109,12 @@ std::array<std::uint8_t, 4> Palette::bgra(std::size_t index) const {
     return {color.b, color.g, color.r, 255};
 }
 
-std::uint8_t Palette::nearest(std::uint32_t rgb) const {
-    const Color wanted = color_of(rgb);
+std::uint8_t Palette::nearest(const std::array<int, 3>& rgb) const {
     int least = std::numeric_limits<int>::max();
     std::size_t best = 0;
     for (std::size_t i = 0; i < colors_.size(); ++i) {
-        const int r = colors_[i].r - wanted.r;
-        const int g = colors_[i].g - wanted.g;
-        const int b = colors_[i].b - wanted.b;
-        // The eye sees green best, blue worst.
-        const int distance = 2 * r * r + 4 * g * g + b * b;
+        const auto apart = difference(rgb, colors_[i]);
+        const int distance = product(apart, apart);
         if (distance >= least) continue;
         least = distance;
         best = i;
@@ -106,23 +122,40 @@ std::uint8_t Palette::nearest(std::uint32_t rgb) const {
     return static_cast<std::uint8_t>(best);
 }
 
-void Palette::map(const std::uint8_t* rgba, int count, std::uint8_t* indices) {
+Palette::Mix Palette::mix_of(std::uint32_t rgb) const {
+    constexpr int kMaxApart = 24 * 24 * 7;  // a pattern of colours that differ more would be seen
+    const Color color = color_of(rgb);
+    const std::array<int, 3> wanted{color.r, color.g, color.b};
+    Mix mix;
+    mix.first = mix.second = nearest(wanted);
+    const auto missing = difference(wanted, colors_[mix.first]);
+    // The other entry is on the other side of the colour.
+    mix.second = nearest({wanted[0] + missing[0], wanted[1] + missing[1], wanted[2] + missing[2]});
+    const Color& second = colors_[mix.second];
+    const auto apart = difference({second.r, second.g, second.b}, colors_[mix.first]);
+    const int square = product(apart, apart);
+    if (square > 0 && square <= kMaxApart)
+        mix.share = static_cast<std::uint8_t>(std::clamp(64 * product(missing, apart) / square, 0, 63));
+    return mix;
+}
+
+void Palette::map(const std::uint8_t* rgba, int count, int x, int y, std::uint8_t* indices) {
     if (known_.size() > kMaxKnown) known_.clear();
     std::uint32_t last = 0;
-    int last_index = -1;
-    for (int x = 0; x < count; ++x, rgba += 4) {
+    const Mix* mix = nullptr;  // of `last`
+    for (int i = 0; i < count; ++i, rgba += 4) {
         if (rgba[3] < kHalfOpaque) {
-            indices[x] = kTransparent;
+            indices[i] = kTransparent;
             continue;
         }
         const std::uint32_t rgb = packed(rgba);
-        if (last_index < 0 || rgb != last) {
-            const auto [entry, is_new] = known_.try_emplace(rgb, std::uint8_t{0});
-            if (is_new) entry->second = nearest(rgb);
+        if (mix == nullptr || rgb != last) {
+            const auto [entry, is_new] = known_.try_emplace(rgb);
+            if (is_new) entry->second = mix_of(rgb);
             last = rgb;
-            last_index = entry->second;
+            mix = &entry->second;
         }
-        indices[x] = static_cast<std::uint8_t>(last_index);
+        indices[i] = bayer(x + i, y) < mix->share ? mix->second : mix->first;
     }
 }
 

@@ -22,15 +22,24 @@ class Palette {
     /// Blue, green, red and alpha of an entry; black if it is not used.
     [[nodiscard]] std::array<std::uint8_t, 4> bgra(std::size_t index) const;
 
-    /// The nearest entry of each of `count` RGBA pixels; pixels that are less than half opaque are
-    /// transparent.
-    void map(const std::uint8_t* rgba, int count, std::uint8_t* indices);
+    /// The entries of `count` RGBA pixels of a picture from (x, y) on; pixels that are less than half opaque
+    /// are transparent. A colour between two entries is a pattern of both, which depends on the place of a
+    /// pixel and its colour alone: what stands still has the same entries in all pictures.
+    void map(const std::uint8_t* rgba, int count, int x, int y, std::uint8_t* indices);
 
   private:
-    [[nodiscard]] std::uint8_t nearest(std::uint32_t rgb) const;
+    /// A colour as a pattern of two entries.
+    struct Mix {
+        std::uint8_t first = 0;
+        std::uint8_t second = 0;
+        std::uint8_t share = 0;  ///< of the second one, in 64 pixels
+    };
+
+    [[nodiscard]] std::uint8_t nearest(const std::array<int, 3>& rgb) const;
+    [[nodiscard]] Mix mix_of(std::uint32_t rgb) const;
 
     std::vector<Color> colors_;
-    std::unordered_map<std::uint32_t, std::uint8_t> known_;
+    std::unordered_map<std::uint32_t, Mix> known_;
 };
 
 /// Pixels of colours that agree in their first bits.
