@@ -48,7 +48,6 @@ if [[ "${1:-build}" != build ]]; then
         libgtest-dev        # the tests
         libgmock-dev        # its matchers
         libbenchmark-dev    # measured speed
-        libswscale-dev      # shows pictures as a player does, for their measured quality
         fonts-arphic-uming  # a font with Chinese characters, of which the small ones are bitmaps as well
         clang-format        # the style check
         clang               # the tests under the sanitizers, by a second compiler

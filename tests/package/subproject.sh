@@ -15,7 +15,7 @@ fail() { echo "subproject.sh: $1" >&2; cat "$work/log" >&2; exit 1; }
 absent=(-DCMAKE_DISABLE_FIND_PACKAGE_{CLI11,GTest,benchmark,pybind11,Python,Python3}=ON)
 cat >"$work/pkg-config" <<'END'
 #!/bin/sh
-case "$*" in *microhttpd*|*swscale*) exit 1 ;; esac
+case "$*" in *microhttpd*) exit 1 ;; esac
 exec pkg-config "$@"
 END
 chmod +x "$work/pkg-config"

@@ -262,7 +262,7 @@ std::optional<PictureOrigin> frame_of_sequence(const std::string& number) {
 }
 
 std::string text_in_video(const std::string& path, OriginUse use) {
-    const std::string text = media::comment_in_child(path, remedy(use));
+    const std::string text = media::video_comment(path, remedy(use));
     Json comment = Json::parse(text, nullptr, false);  // its size and depth were checked
     if (!comment.is_object() || !comment.contains(kProvenanceKey)) return {};
     return comment[kProvenanceKey].dump();

@@ -96,7 +96,7 @@ inline constexpr const char* kProvenanceKey = "provenance";
 /// For which advice errors give: a file of --from, or a part of a joined video.
 enum class OriginUse { kFrom, kJoin };
 
-/// Reads what a PNG or a video carries; a video in a child process (see core/child_process.hpp).
+/// Reads what a PNG or a video carries.
 /// Throws corda::Error: kIo if the file cannot be read, kUsage if it carries nothing, or what it carries is
 /// damaged.
 [[nodiscard]] Provenance read_provenance(const std::string& path, OriginUse use = OriginUse::kFrom);

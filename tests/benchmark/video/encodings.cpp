@@ -1,10 +1,7 @@
 #include "benchmark/video/encodings.hpp"
 
-extern "C" {
-#include <libswscale/swscale.h>
-}
-
 #include <algorithm>
+#include <cstdio>
 #include <memory>
 #include <utility>
 
@@ -15,7 +12,6 @@ extern "C" {
 #include "corda/core/file.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/media/format/format.hpp"
-#include "corda/media/read/decoder.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "support/edge_quality.hpp"
 
@@ -27,53 +23,41 @@ using nlohmann::json;
 /// Every tenth frame is compared.
 constexpr std::int64_t kCompared = 10;
 
-/// Converts decoded frames of any pixel format to 8-bit RGBA as a player does, which interpolates chroma.
+/// The frames of a video as 8-bit RGBA, by the program ffmpeg, which interpolates chroma as a player does.
 class ShownPictures {
   public:
-    /// Converts by the frame's own tags, BT.709 in limited range if it has none.
-    void convert(const AVFrame& frame, Image& picture);
+    ShownPictures(const std::string& path, int width_px, int height_px)
+        : image_(width_px, height_px),
+          pipe_(::popen(("ffmpeg -v error -i '" + path +
+                         "' -vf scale=flags=bilinear+full_chroma_int+full_chroma_inp+accurate_rnd+bitexact,"
+                         "format=rgba -f rawvideo -")
+                            .c_str(),
+                        "r")) {}
+
+    /// Reads the next frame; false after the last one.
+    [[nodiscard]] bool read() {
+        return std::fread(image_.data(), 1, image_.size_bytes(), pipe_.get()) == image_.size_bytes();
+    }
+    [[nodiscard]] const Image& image() const { return image_; }
 
   private:
-    struct Free {
-        void operator()(SwsContext* context) const { sws_freeContext(context); }
+    struct Close {
+        void operator()(std::FILE* pipe) const { ::pclose(pipe); }
     };
-    std::unique_ptr<SwsContext, Free> scaler_;  ///< of the last frame's size and format
+    Image image_;
+    std::unique_ptr<std::FILE, Close> pipe_;
 };
-
-void ShownPictures::convert(const AVFrame& frame, Image& picture) {
-    const auto format = static_cast<AVPixelFormat>(frame.format);
-    // Chroma is interpolated, not repeated, and nothing is rounded to the speed of a CPU's instructions.
-    constexpr int kFlags =
-        SWS_BILINEAR | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP | SWS_ACCURATE_RND | SWS_BITEXACT;
-    scaler_.reset(sws_getCachedContext(scaler_.release(), frame.width, frame.height, format, frame.width,
-                                       frame.height, AV_PIX_FMT_RGBA, kFlags, nullptr, nullptr, nullptr));
-    if (!scaler_) throw Error(ExitCode::kIo, "pictures of this pixel format cannot be converted");
-    const int matrix =
-        frame.colorspace == AVCOL_SPC_UNSPECIFIED ? SWS_CS_ITU709 : static_cast<int>(frame.colorspace);
-    const int* const table = sws_getCoefficients(matrix);
-    const int is_full_range = frame.color_range == AVCOL_RANGE_JPEG ? 1 : 0;
-    constexpr int kOne = 1 << 16;
-    sws_setColorspaceDetails(scaler_.get(), table, is_full_range, table, 1, 0, kOne, kOne);
-    if (picture.width() != frame.width || picture.height() != frame.height)
-        picture = Image(frame.width, frame.height);
-    std::uint8_t* const rows = picture.data();
-    const auto row_bytes = static_cast<int>(picture.row_bytes());
-    sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height, &rows, &row_bytes);
-}
 
 /// The quality of the video at `path`.
 json quality_of(Film& film, std::int64_t frames, const std::string& path) {
     FilmRenderer renderer(film);
-    media::Decoder decoder(path);
-    ShownPictures pictures;
+    ShownPictures pictures(path, film.scene().video.width_px, film.scene().video.height_px);
     test::EdgeQuality edges;
-    Image shown;
     for (std::int64_t k = 0; k < frames; ++k) {
-        if (!decoder.read()) throw Error(ExitCode::kEncoder, "the video has too few frames");
+        if (!pictures.read()) throw Error(ExitCode::kEncoder, "the video has too few frames");
         if (k % kCompared != 0) continue;
-        pictures.convert(decoder.frame(), shown);
         static_cast<void>(renderer.draw(film.time_s(k)));
-        edges.add(renderer.image(), shown);
+        edges.add(renderer.image(), pictures.image());
     }
     return {{"edge_psnr_db", test::psnr_db(edges.mean_square())}, {"edge_ssim", edges.ssim()}};
 }

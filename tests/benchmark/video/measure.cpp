@@ -2,8 +2,11 @@
 
 #include <malloc.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -13,7 +16,6 @@
 
 #include "benchmark/video/baseline_encoder.hpp"
 #include "corda/core/basics.hpp"
-#include "corda/core/child_process.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/media/encode/encoder.hpp"
@@ -169,12 +171,24 @@ json measure_stages(const BenchDef& def, const std::string& path) {
 }  // namespace
 
 json in_child(const std::function<json()>& work) {
-    constexpr double kMaxS = 86'400.0;
-    const ChildLimits limits{std::uint64_t{1} << 46U, static_cast<std::int64_t>(kMaxS), kMaxS};
-    const auto end = run_in_child([&work] { return work().dump(); }, limits);
-    if (!end) throw Error(ExitCode::kTemporary, "the system starts no further process; try again");
-    if (!end->finished()) throw Error(ExitCode::kTemporary, "the process that measures " + end->text);
-    return json::parse(end->text);
+    std::array<int, 2> ends{};
+    if (::pipe(ends.data()) != 0) throw Error(ExitCode::kTemporary, "the system makes no further pipe");
+    const pid_t child = ::fork();
+    if (child < 0) throw Error(ExitCode::kTemporary, "the system starts no further process; try again");
+    if (child == 0) {
+        const std::string text = work().dump();
+        ::_exit(write_all(ends[1], text) == 0 ? 0 : 1);
+    }
+    ::close(ends[1]);
+    std::string text;
+    std::array<char, 4096> part{};
+    for (ssize_t count = 0; (count = ::read(ends[0], part.data(), part.size())) > 0;)
+        text.append(part.data(), static_cast<std::size_t>(count));
+    ::close(ends[0]);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    if (status != 0) throw Error(ExitCode::kTemporary, "the process that measures has failed");
+    return json::parse(text);
 }
 
 Measured measure(const BenchDef& def) {

@@ -114,10 +114,10 @@ void convert_to_yuv444(const Image& rgb, const PixelRect& damage, int bits, cons
     }
 }
 
-std::array<double, 3> rgb_from_ycbcr(double y, double cb, double cr, bool is_full_range) {
-    const double luma = is_full_range ? y / 255.0 : (y - 16.0) / 219.0;
-    const double blue = (cb - 128.0) / (is_full_range ? 255.0 : 224.0);
-    const double red = (cr - 128.0) / (is_full_range ? 255.0 : 224.0);
+std::array<double, 3> rgb_from_ycbcr(double y, double cb, double cr) {
+    const double luma = (y - 16.0) / 219.0;
+    const double blue = (cb - 128.0) / 224.0;
+    const double red = (cr - 128.0) / 224.0;
     return {255.0 * (luma + 1.5748 * red), 255.0 * (luma - 0.1873243 * blue - 0.4681243 * red),
             255.0 * (luma + 1.8556 * blue)};
 }

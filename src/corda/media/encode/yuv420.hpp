@@ -27,8 +27,7 @@ void convert_to_yuv420(const Image& rgb, const PixelRect& damage, const YuvPlane
 /// the lower one first.
 void convert_to_yuv444(const Image& rgb, const PixelRect& damage, int bits, const YuvPlanes& yuv);
 
-/// The inverse: R'G'B' (0 .. 255, not clipped) of BT.709 Y'CbCr in units of 8 bits, in limited or full range.
-[[nodiscard]] std::array<double, 3> rgb_from_ycbcr(double y, double cb, double cr,
-                                                   bool is_full_range = false);
+/// The inverse: R'G'B' (0 .. 255, not clipped) of BT.709 Y'CbCr in units of 8 bits, in limited range.
+[[nodiscard]] std::array<double, 3> rgb_from_ycbcr(double y, double cb, double cr);
 
 }  // namespace corda::media

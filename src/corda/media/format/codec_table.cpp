@@ -34,84 +34,6 @@ constexpr double kGifTolerance = 32.0;
 /// 260, veryslow 400 to 470. A preset takes more the further it looks ahead.
 constexpr std::array kX264JobBytes{24, 60, 90, 150, 190, 220, 260, 360, 470, 600};
 
-constexpr std::array kH264Players{
-    Players{"mp4", "yuv420p",
-            "Chrome, Edge, Firefox, Safari, QuickTime and PowerPoint play it, YouTube takes it"},
-    Players{
-        "mov", "yuv420p",
-        "QuickTime, Keynote, PowerPoint and Safari play it, YouTube takes it; some browsers do not play it"},
-    Players{"mov", "yuv444p",
-            "4:4:4, High 4:4:4 Predictive: VLC, mpv and ffmpeg play it; QuickTime, browsers and PowerPoint "
-            "do not"},
-    Players{"mp4", "yuv444p",
-            "4:4:4, High 4:4:4 Predictive: VLC, mpv and ffmpeg play it; browsers, QuickTime and PowerPoint "
-            "refuse it"}};
-constexpr std::array kH265Players{
-    Players{"mp4", "yuv420p",
-            "Safari, QuickTime and new PowerPoint play it, YouTube takes it; Firefox and many Chromes do not "
-            "play it"},
-    Players{"mov", "yuv420p",
-            "QuickTime, Keynote and Safari play it, YouTube takes it; browsers mostly do not"},
-    Players{"mp4", "yuv444p",
-            "4:4:4: VLC, mpv and ffmpeg play it; browsers, QuickTime and PowerPoint mostly refuse it"}};
-constexpr std::array kAv1Players{
-    Players{"mp4 webm", "yuv420p",
-            "Chrome, Edge and Firefox play it, Safari on new devices; YouTube takes it; PowerPoint and old "
-            "QuickTime do not"},
-    Players{
-        "mp4 webm", "yuv444p",
-        "4:4:4: Chrome, Firefox, VLC and mpv play it; hardware decoders, QuickTime and PowerPoint do not"}};
-constexpr std::array kVp9Players{
-    Players{
-        "webm", "yuv420p",
-        "Chrome, Edge, Firefox and new Safari play it, YouTube takes it; PowerPoint and QuickTime do not"},
-    Players{
-        "webm", "yuva420p",
-        "Chrome, Edge and Firefox play it with its transparency; Safari, PowerPoint and QuickTime do not"},
-    Players{"webm", "yuv444p",
-            "4:4:4: Chrome, Firefox, VLC and mpv play it; Safari and hardware decoders do not"}};
-constexpr std::array kProresPlayers{
-    Players{"mov", "",
-            "QuickTime, Keynote and video editors play it, YouTube takes it; browsers and PowerPoint on "
-            "Windows do not"}};
-constexpr std::array kFfv1Players{Players{
-    "matroska", "", "VLC, mpv and ffmpeg play it; browsers, QuickTime, PowerPoint and YouTube do not"}};
-constexpr std::array kRawPlayers{Players{
-    "yuv4mpegpipe", "", "for encoders such as ffmpeg; browsers, QuickTime and PowerPoint do not play it"}};
-constexpr std::array kGifPlayers{
-    Players{"gif", "", "browsers and PowerPoint play it; QuickTime does not, and YouTube takes no GIF"}};
-/// Table A-1 of Rec. ITU-T H.264 (08/2021), in macroblocks.
-constexpr std::array kH264Levels{
-    Level{10, 99, 1485},        Level{11, 396, 3000},       Level{12, 396, 6000},
-    Level{13, 396, 11880},      Level{21, 792, 19800},      Level{22, 1620, 20250},
-    Level{30, 1620, 40500},     Level{31, 3600, 108000},    Level{32, 5120, 216000},
-    Level{40, 8192, 245760},    Level{42, 8704, 522240},    Level{50, 22080, 589824},
-    Level{51, 36864, 983040},   Level{52, 36864, 2073600},  Level{60, 139264, 4177920},
-    Level{61, 139264, 8355840}, Level{62, 139264, 16711680}};
-/// VP9 Levels (www.webmproject.org/vp9/levels): picture size, sample rate, largest side.
-constexpr std::array kVp9Levels{Level{10, 36864, 829440, 512, 512},
-                                Level{11, 73728, 2764800, 768, 768},
-                                Level{20, 122880, 4608000, 960, 960},
-                                Level{21, 245760, 9216000, 1344, 1344},
-                                Level{30, 552960, 20736000, 2048, 2048},
-                                Level{31, 983040, 36864000, 2752, 2752},
-                                Level{40, 2228224, 83558400, 4160, 4160},
-                                Level{41, 2228224, 160432128, 4160, 4160},
-                                Level{50, 8912896, 311951360, 8384, 8384},
-                                Level{51, 8912896, 588251136, 8384, 8384},
-                                Level{52, 8912896, 1176502272, 8384, 8384},
-                                Level{60, 35651584, 1176502272, 16832, 16832},
-                                Level{61, 35651584, 2353004544, 16832, 16832},
-                                Level{62, 35651584, 4706009088, 16832, 16832}};
-/// AV1 Bitstream & Decoding Process Specification, A.3: MaxPicSize, MaxDisplayRate, MaxHSize, MaxVSize.
-constexpr std::array kAv1Levels{
-    Level{20, 147456, 4423680, 2048, 1152},       Level{21, 278784, 8363520, 2816, 1584},
-    Level{30, 665856, 19975680, 4352, 2448},      Level{31, 1065024, 31950720, 5504, 3096},
-    Level{40, 2359296, 70778880, 6144, 3456},     Level{41, 2359296, 141557760, 6144, 3456},
-    Level{50, 8912896, 267386880, 8192, 4352},    Level{51, 8912896, 534773760, 8192, 4352},
-    Level{52, 8912896, 1069547520, 8192, 4352},   Level{60, 35651584, 1069547520, 16384, 8704},
-    Level{61, 35651584, 2139095040, 16384, 8704}, Level{62, 35651584, 4278190080, 16384, 8704}};
-
 EncoderOptions x265_options(const Format& format, const VideoDef& def) {
     // One frame at a time: the bytes depend on frame-threads, and pools start threads of all cores. B-frames
     // do not pay: without them a video of `first` takes a third less time for as many bytes and 0.6 dB more.
@@ -189,9 +111,6 @@ constexpr std::array kCodecs{
           .preset_job_bytes = kX264JobBytes,
           .disk_bytes = {1e-4, 0.0035},
           .has_coarse_444 = true,
-          .players = kH264Players,
-          .levels = kH264Levels,
-          .level_block_px = 16,
           .make = &make_x264_encoder,
           .version = &x264_version},
     Codec{.name = "libx265",
@@ -208,7 +127,6 @@ constexpr std::array kCodecs{
           .job_bytes = 210,
           .disk_bytes = {9e-5, 0.0028},
           .has_coarse_444 = true,
-          .players = kH265Players,
           .options = &x265_options},
     Codec{.name = "libsvtav1",
           .short_name = "av1",
@@ -225,8 +143,6 @@ constexpr std::array kCodecs{
           .own_threads = 16,
           .job_bytes = 230,
           .disk_bytes = {4e-5, 0.0023},
-          .players = kAv1Players,
-          .levels = kAv1Levels,
           .options = &svt_av1_options},
     Codec{.name = "libaom-av1",
           .short_name = "av1",
@@ -252,8 +168,6 @@ constexpr std::array kCodecs{
           .default_crf_of_alpha = kVp9AlphaCrf,
           .job_bytes = 155,
           .disk_bytes = {4e-5, 0.0026},
-          .players = kVp9Players,
-          .levels = kVp9Levels,
           .options = &vp9_options},
     Codec{.name = "h264_nvenc",
           .short_name = "nvenc",
@@ -275,7 +189,6 @@ constexpr std::array kCodecs{
           .pixel_formats = {"yuv444p10le", "yuva444p10le"},
           .job_bytes = 22,
           .disk_bytes = {0.01, 0.31},
-          .players = kProresPlayers,
           .options = &prores_options},
     Codec{.name = "ffv1",
           .short_name = "ffv1",
@@ -285,7 +198,6 @@ constexpr std::array kCodecs{
           .min_side_px = kMinFfv1SidePx,
           .job_bytes = 185,
           .disk_bytes = {0.0015, 0.16},
-          .players = kFfv1Players,
           .options = &ffv1_options},
     Codec{.name = "png",
           .short_name = "png",
@@ -301,16 +213,14 @@ constexpr std::array kCodecs{
           .stream = "rawvideo",
           .pixel_formats = {"yuv420p", "yuv444p", "rgba"},
           .is_built_in = true,
-          .job_bytes = 18,
-          .players = kRawPlayers},
+          .job_bytes = 18},
     Codec{.name = "gif",
           .short_name = "gif",
           .standard = "GIF",
           .stream = "gif",
           .pixel_formats = {"rgba"},
           .disk_bytes = {2e-4, 0.016},
-          .tolerance = kGifTolerance,
-          .players = kGifPlayers},
+          .tolerance = kGifTolerance},
 };
 
 }  // namespace

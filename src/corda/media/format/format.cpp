@@ -268,12 +268,6 @@ const Codec* find_codec(std::string_view name) {
     return row == codecs().end() ? nullptr : &*row;
 }
 
-const Codec* find_stream_codec(std::string_view stream) {
-    const auto row =
-        std::ranges::find_if(codecs(), [stream](const Codec& codec) { return stream == codec.stream; });
-    return row == codecs().end() ? nullptr : &*row;
-}
-
 std::span<const Ending> endings() {
     return kEndings;
 }

@@ -29,22 +29,6 @@ using PictureInfo = std::function<PngInfo(std::int64_t frame)>;
 /// Makes an encoder of libav by Codec::options.
 [[nodiscard]] std::unique_ptr<Encoder> make_libav_encoder(const Format& format, const VideoDef& def);
 
-/// Programs that play a codec of a pixel format in some containers.
-struct Players {
-    std::string_view containers;    ///< words of VerifyReport::container
-    std::string_view pixel_format;  ///< libav's name; empty: any
-    std::string_view words;
-};
-
-/// Limits of a level of a codec, in luma samples or in blocks of them.
-struct Level {
-    int times_10;          ///< 41 is level 4.1
-    std::int64_t picture;  ///< samples of a frame
-    std::int64_t per_s;    ///< samples per second
-    int max_width = 0;     ///< 0: the square root of 8 times `picture`
-    int max_height = 0;    ///< the same
-};
-
 /// Bytes of a frame on the disk per pixel.
 struct DiskBytes {
     double min = 0.0;    ///< at most half of what two links on a black ground take at 3840x2160
@@ -76,11 +60,8 @@ struct Codec {
     int job_bytes = 240;
     std::span<const int> preset_job_bytes{};  ///< the same for each of `presets`, if they differ
     DiskBytes disk_bytes{};
-    double tolerance = 0.0;              ///< largest error of a colour patch, in 1/255; 0: patch_tolerance()
-    bool has_coarse_444 = false;         ///< it quantises the colour of 4:4:4 more coarsely
-    std::span<const Players> players{};  ///< of codecs of one stream, the first has them
-    std::span<const Level> levels{};     ///< the same, the lowest first
-    int level_block_px = 1;              ///< side of the blocks that `levels` count
+    double tolerance = 0.0;       ///< largest error of a colour patch, in 1/255; 0: by the crf
+    bool has_coarse_444 = false;  ///< it quantises the colour of 4:4:4 more coarsely
     std::unique_ptr<Encoder> (*make)(const Format& format, const VideoDef& def) = &make_libav_encoder;
     EncoderOptions (*options)(const Format& format, const VideoDef& def) = nullptr;  ///< null: none
     std::string (*version)() = nullptr;  ///< of an encoder that is not libav's; gives "" if it is missing
@@ -137,8 +118,6 @@ struct Format {
 
 /// The first codec of this name or short name; null for none.
 [[nodiscard]] const Codec* find_codec(std::string_view name);
-/// The first codec of a coded format, by libav's name ("h264"); null for none.
-[[nodiscard]] const Codec* find_stream_codec(std::string_view stream);
 
 /// The row for the ending of `path`: of a name with a number in it ("%04d") that ends in .png, the pictures.
 /// Throws corda::Error (kUsage), naming the endings that are known.

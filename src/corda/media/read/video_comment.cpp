@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "corda/core/child_process.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/text.hpp"
-#include "corda/media/read/decoder.hpp"
+#include "corda/media/format/file_kind.hpp"
+#include "corda/media/libav_handles.hpp"
 
 namespace corda::media {
 namespace {
@@ -43,27 +44,43 @@ Json parse_untrusted_json(std::string_view text) {
 
 namespace {
 
-constexpr ChildLimits kCommentLimits{std::uint64_t{4} << 30, 20, 60.0};
 [[noreturn]] void fail_reading(const std::string& path, ExitCode code, const std::string& problem,
                                std::string_view remedy) {
     throw_error(code, "cannot read '{}': {}; {}", path, problem, remedy);
 }
 
-std::string read_comment(const std::string& path, std::string_view remedy) {
+/// libav's question whether to give up.
+int is_to_stop(void* /*unused*/) noexcept {
     try {
-        return metadata_entry(Decoder(path).format(), "comment");
-    } catch (const Error& error) {
-        fail_reading(path, ExitCode::kIo, error.what(), remedy);
+        check_cancelled();
+        return 0;
+    } catch (...) {
+        return 1;
     }
 }
 
 }  // namespace
 
-std::string comment_in_child(const std::string& path, std::string_view remedy) {
-    const QuietLog quiet;
-    const auto end = run_in_child([&] { return read_comment(path, remedy); }, kCommentLimits);
-    if (end && !end->finished()) fail_reading(path, ExitCode::kIo, "it " + end->text, remedy);
-    std::string comment = end ? end->text : read_comment(path, remedy);
+std::string video_comment(const std::string& path, std::string_view remedy) {
+    const LogCapture log;
+    // libav does not choose the demuxer: it takes a text file for ANSI art, and follows a playlist.
+    const std::string kind = file_kind(path);
+    const AVInputFormat* const demuxer = kind.empty() ? nullptr : av_find_input_format(kind.c_str());
+    if (demuxer == nullptr) {
+        const ForeignKind* const foreign = foreign_kind_of(path);
+        fail_reading(path, ExitCode::kIo,
+                     foreign == nullptr ? "it is no video of a kind that is known"
+                                        : fmt::format("it is {}: {}", foreign->words, foreign->remedy),
+                     remedy);
+    }
+    AVFormatContext* format = check_allocated(avformat_alloc_context(), "a demuxer");
+    format->interrupt_callback.callback = &is_to_stop;
+    const int status = avformat_open_input(&format, file_url(path).c_str(), demuxer, nullptr);
+    check_cancelled();
+    if (status < 0) fail_reading(path, ExitCode::kIo, libav_text(status), remedy);
+    const InputFormat file(format);
+    const AVDictionaryEntry* const entry = av_dict_get(file->metadata, "comment", nullptr, 0);
+    std::string comment = entry == nullptr ? "" : entry->value;
     if (const std::string problem = comment_problem(comment); !problem.empty())
         fail_reading(path, ExitCode::kUsage, "its comment " + problem, remedy);
     return comment;

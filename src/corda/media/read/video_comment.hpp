@@ -22,11 +22,10 @@ inline constexpr int kDeepestJsonLevel = 16;
 /// that is no JSON.
 [[nodiscard]] std::string comment_problem(std::string_view comment);
 
-/// The comment of a video of any origin, read in a child process with limits on memory and time; empty if it
-/// has none. `remedy` ends the messages. Throws corda::Error: kIo if the file cannot
-/// be read or is no video, kUsage if its comment has a comment_problem(), and what run_in_child throws, which
-/// also says why this process must have no other thread.
-[[nodiscard]] std::string comment_in_child(const std::string& path,
-                                           std::string_view remedy = "give a video that corda has written");
+/// The comment of a video of any origin; empty if it has none. Only the header of the file is read. `remedy`
+/// ends the messages. Throws corda::Error: kIo if the file cannot be read or is no video, kUsage if its
+/// comment has a comment_problem(), kInterrupted if cancelled.
+[[nodiscard]] std::string video_comment(const std::string& path,
+                                        std::string_view remedy = "give a video that corda has written");
 
 }  // namespace corda::media

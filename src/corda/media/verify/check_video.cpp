@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "corda/core/cancel.hpp"
+#include "corda/core/file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/media/bytes.hpp"
 #include "corda/media/encode/pixels.hpp"
 #include "corda/media/encode/yuv420.hpp"
 #include "corda/media/format/file_kind.hpp"
@@ -209,14 +209,13 @@ void check_first_picture(const AVPacket& packet, const AVStream& stream, const E
                "first picture");
 }
 
-/// Whether the index of an MP4 or QuickTime file comes first, so that browsers start to play at once.
+/// Whether the index of an MP4 or QuickTime file follows its first box, so that browsers start to play at
+/// once.
 bool has_index_first(const std::string& path) {
-    ByteReader bytes = ByteReader::of_file(path);
-    for (auto box = next_mp4_box(bytes); box; box = next_mp4_box(bytes)) {
-        if (box->type == "moov" || box->type == "mdat") return box->type == "moov";
-        if (!bytes.skip(box->length)) break;
-    }
-    return false;
+    const std::string head = first_bytes(path, 4096);
+    std::size_t index = 0;  // where the second box begins: the size of the first, the largest byte first
+    for (const char byte : head.substr(0, 4)) index = index << 8U | static_cast<unsigned char>(byte);
+    return head.size() >= index + 8 && head.substr(index + 4, 4) == "moov";
 }
 
 /// Checks the length of a track whose last frame ends at tick `end`.

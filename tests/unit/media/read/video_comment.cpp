@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "support/failure.hpp"
 #include "unit/media/video_support.hpp"
@@ -45,9 +46,51 @@ TEST_F(Video, WithANestedCommentIsNoSoundOne) {
             test::run_shell("ffmpeg -v error -y -i " + file("a.mp4") + " -c copy -metadata comment='" +
                             nested_json(levels) + "' " + file("b.mp4"));
         ASSERT_EQ(copied.exit_code, 0) << copied.err;
-        const auto failure = failure_of([&] { static_cast<void>(comment_in_child(file("b.mp4"))); });
+        const auto failure = failure_of([&] { static_cast<void>(video_comment(file("b.mp4"))); });
         EXPECT_EQ(failure.code, ExitCode::kUsage);
         EXPECT_THAT(failure.message, HasSubstr("nested more than 16 levels deep"));
+    }
+}
+
+/// A copy with a few damaged bytes, most of them in the header.
+std::string damaged(std::string bytes, std::uint32_t seed) {
+    std::mt19937 random(seed);  // the same everywhere
+    for (std::uint32_t i = 0; i < 1 + seed % 5 && !bytes.empty(); ++i) {
+        const std::size_t range =
+            random() % 4 == 0 ? bytes.size() : std::min<std::size_t>(bytes.size(), 4096);
+        const std::size_t at = random() % range;
+        switch (random() % 4) {
+            case 0:
+                bytes.erase(at, 1 + random() % 8);
+                break;
+            case 1:
+                bytes.insert(at, bytes.substr(random() % bytes.size(), random() % 60));
+                break;
+            case 2:
+                bytes.replace(at, 4, random() % 2 == 0 ? "\xff\xff\xff\xff" : std::string(4, '\0'));
+                break;
+            default:
+                bytes[at] = static_cast<char>(static_cast<unsigned char>(bytes[at]) ^ (1U << random() % 8));
+        }
+    }
+    return bytes;
+}
+
+TEST_F(Video, OfDamagedBytesHasACommentOrIsRefused) {
+    for (const std::string name : {"a.mp4", "a.mov", "a.webm", "a.mkv"}) {
+        make_video(file(name), small_video(), 3);
+        const std::string whole = test::read_file(file(name));
+        EXPECT_THAT(video_comment(file(name)), HasSubstr("\"scene\":\"test\""));
+        int read = 0;
+        for (std::uint32_t seed = 0; seed < 200; ++seed) {
+            test::write_file(file("b"), damaged(whole, seed));
+            const auto failure = failure_of([&] { static_cast<void>(video_comment(file("b"))); });
+            EXPECT_TRUE(failure.code == ExitCode::kOk || failure.code == ExitCode::kIo ||
+                        failure.code == ExitCode::kUsage)
+                << name << seed << failure.message;
+            read += failure.code == ExitCode::kOk ? 1 : 0;
+        }
+        EXPECT_GT(read, 0) << name;
     }
 }
 
