@@ -113,55 +113,6 @@ class Video : public testing::Test {
     std::string video_ = folder_.file("out.mp4");
 };
 
-class VideoTimes
-    : public Video,
-      public testing::WithParamInterface<std::tuple<std::string, int, std::int64_t, std::int64_t>> {};
-
-TEST_P(VideoTimes, AreExact) {
-    const auto [rate, frames, num, den] = GetParam();
-    ASSERT_EQ(run_corda({"render", scene_, "-o", video_, "--fps", rate, "--duration", "2"}).exit_code, 0);
-    const auto probe = test::run_shell(
-        "ffprobe -v error -count_frames -of json -show_format -show_streams -show_entries frame=pts " +
-        video_);
-    const json report = json::parse(probe.out);
-    const json& stream = report["streams"][0];
-    EXPECT_EQ(stream["nb_read_frames"], std::to_string(frames));
-    EXPECT_EQ(stream["nb_frames"], std::to_string(frames));
-    EXPECT_EQ(stream["r_frame_rate"], std::to_string(num) + "/" + std::to_string(den));
-    EXPECT_EQ(stream["avg_frame_rate"], std::to_string(num) + "/" + std::to_string(den));
-    EXPECT_EQ(stream["time_base"], "1/" + std::to_string(num));
-    EXPECT_EQ(stream["duration_ts"], frames * den);
-    EXPECT_EQ(stream["start_pts"], 0);
-    EXPECT_NEAR(std::stod(report["format"]["duration"].get<std::string>()),
-                static_cast<double>(frames * den) / static_cast<double>(num), 1e-6);
-    ASSERT_EQ(report["frames"].size(), static_cast<std::size_t>(frames));
-    for (int k = 0; k < frames; ++k) ASSERT_EQ(report["frames"][static_cast<std::size_t>(k)]["pts"], k * den);
-}
-
-INSTANTIATE_TEST_SUITE_P(Rates, VideoTimes,
-                         testing::Values(std::tuple{"60", 120, 60, 1}, std::tuple{"25", 50, 25, 1},
-                                         std::tuple{"30000/1001", 60, 30000, 1001},
-                                         std::tuple{"24000/1001", 48, 24000, 1001}),
-                         [](const auto& rate) {
-                             return fmt::format("{}_{}", std::get<2>(rate.param), std::get<3>(rate.param));
-                         });
-
-TEST_F(Video, IsTaggedForBrowsers) {
-    ASSERT_EQ(run_corda({"render", scene_, "-o", video_}).exit_code, 0);
-    const auto probe = test::run_shell("ffprobe -v error -of json -show_streams " + video_);
-    const json stream = json::parse(probe.out)["streams"][0];
-    EXPECT_EQ(stream["codec_name"], "h264");
-    EXPECT_EQ(stream["profile"], "High");
-    EXPECT_EQ(stream["pix_fmt"], "yuv420p");
-    EXPECT_EQ(stream["color_range"], "tv");
-    EXPECT_EQ(stream["color_space"], "bt709");
-    EXPECT_EQ(stream["color_primaries"], "bt709");
-    EXPECT_EQ(stream["color_transfer"], "iec61966-2-1");
-    EXPECT_EQ(stream["chroma_location"], "left");
-    const std::string bytes = test::read_file(video_);
-    EXPECT_LT(bytes.find("moov"), bytes.find("mdat"));  // faststart
-}
-
 TEST_F(Video, LeavesNothingButTheVideo) {
     ASSERT_EQ(run_corda({"render", scene_, "-o", video_}).exit_code, 0);
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.mp4", "scene.toml"}));

@@ -20,9 +20,9 @@ VideoFacts probe(const std::string& path) {
             .codec = text("codec_name"),
             .profile = text("profile"),
             .pixel_format = text("pix_fmt"),
-            .rate = text("avg_frame_rate"),
             .colors = text("color_range") + " " + text("color_space") + " " + text("color_primaries") + " " +
                       text("color_transfer"),
+            .chroma_location = text("chroma_location"),
             .duration_s = std::stod(json.at("format").value("duration", "0")),
             .tick_s = 1.0 / std::stod(text("time_base").substr(2))};
 }
