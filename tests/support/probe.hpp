@@ -12,7 +12,6 @@ struct VideoFacts {
     std::string codec;            ///< libav's name: "h264"
     std::string profile;          ///< "High"
     std::string pixel_format;     ///< "yuv420p"
-    std::string rate;             ///< of frames: "30000/1001"
     std::string colors;           ///< range, matrix, primaries and transfer: "tv bt709 bt709 iec61966-2-1"
     std::string chroma_location;  ///< "left"
     double duration_s = 0.0;

@@ -28,6 +28,12 @@ Image ground_and_colors() {
     return image;
 }
 
+Palette palette_of(const Image& image) {
+    PaletteMaker maker;
+    for (std::size_t i = 0; i < image.size_bytes(); i += 4) maker.add(image.data() + i, 1);
+    return maker.make();
+}
+
 /// The entries of a picture, row by row.
 std::vector<std::uint8_t> entries_of(const Image& image, Palette& palette) {
     std::vector<std::uint8_t> entries(image.size_bytes() / 4);
@@ -39,9 +45,7 @@ std::vector<std::uint8_t> entries_of(const Image& image, Palette& palette) {
 
 TEST(Palette, ShowsAGroundThatChangesSlowlyWithoutSteps) {
     const Image image = ground_and_colors();
-    PaletteMaker maker;
-    maker.add(image);
-    Palette palette = maker.make();
+    Palette palette = palette_of(image);
     const auto entries = entries_of(image, palette);
     double worst = 0.0;  // difference of the mean of 8x8 pixels, in levels
     for (int y = 0; y < kSide; y += 8) {
@@ -62,9 +66,7 @@ TEST(Palette, ShowsAGroundThatChangesSlowlyWithoutSteps) {
 
 TEST(Palette, HasTheSameEntryForTheSameColourAtTheSamePlace) {
     const Image image = ground_and_colors();
-    PaletteMaker maker;
-    maker.add(image);
-    Palette palette = maker.make();
+    Palette palette = palette_of(image);
     const auto entries = entries_of(image, palette);
     std::vector<std::uint8_t> part(5);
     palette.map(image.pixel(11, 100), 5, 11, 100, part.data());
@@ -78,9 +80,7 @@ TEST(Palette, KeepsFewColoursExactly) {
         image.pixel(i % 16, i / 16)[0] = static_cast<std::uint8_t>(i);
         image.pixel(i % 16, i / 16)[3] = 255;
     }
-    PaletteMaker maker;
-    maker.add(image);
-    Palette palette = maker.make();
+    Palette palette = palette_of(image);
     const auto entries = entries_of(image, palette);
     for (int i = 0; i < 240; ++i) EXPECT_EQ(palette.bgra(entries[static_cast<std::size_t>(i)])[2], i);
 }
