@@ -75,7 +75,7 @@ class Generator:
                     body.pop("string", None)
 
     def limit_work(self, table):
-        """Limits the time and disk space of random values. Extreme ones remain, for the estimate to refuse."""
+        """Limits the time and disk space of random values. Extreme ones remain: a signal ends them."""
         if self.random.random() < 0.9:
             table.setdefault("world", {})["duration"] = self.random.choice((0.02, 0.1, 0.5))
         video = table.setdefault("video", {})

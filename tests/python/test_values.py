@@ -4,7 +4,6 @@ import decimal
 import fractions
 import os
 import pathlib
-import warnings
 
 import numpy as np
 import pytest
@@ -51,14 +50,6 @@ def test_arrays_and_dictionaries_are_settings():
     assert np.array_equal(still.positions, film().positions)
     assert film(settings={"rope[0].hang": {"links": 3, "length": 1.0}}).positions.shape == (30, 4, 2)
     assert film(settings={"style.supports": np.bool_(False), "overlay.title": np.str_("a \"b\" \\")}).size == (160, 90)
-
-
-def test_a_motion_that_takes_long_is_announced_before_it_is_computed():
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        assert film().size == (160, 90)
-        with pytest.raises(UserWarning, match="^computing 100 s of motion may take .* give .* or a shorter duration"):
-            film(duration=100, settings={"rope[0].compliance": 1e-6, "rope[0].mass": 1e-4})
 
 
 def test_none_leaves_a_key_as_it_is():

@@ -187,7 +187,6 @@ Scene SceneOptions::load_from(const Console& console, const Provenance& origin) 
 Scene SceneOptions::load(const Console& console) const {
     Scene scene = is_from() ? load_from(console, provenance(console)) : parse({}, {}, {});
     if (is_from()) check_size_from_file(scene.video);
-    if (const std::string notice = cost_notice(scene); !notice.empty()) console.info(notice);
     warn_of_unseen_texts(console, scene);
     return scene;
 }

@@ -16,29 +16,19 @@ struct PlanOptions {
     bool toml = false;
 };
 
-struct Cost {
-    double steps = 0.0;
-    double time_s = 0.0;
-};
-
-/// Cost of one run: the steps of the trial that holds, or the duration over the step; std::nullopt if only a
-/// run can show it.
-std::optional<Cost> cost_of(const Film& film) {
-    const double duration_s = film.scene().world.duration_s;
-    Cost cost;
-    for (std::size_t i = 0; i < film.plan().bodies.size(); ++i) {
-        const BodyPlan& body = film.plan().bodies[i];
-        double steps = 0.0;
+/// Steps of one run: those of the trial that holds, or the duration over the step; std::nullopt if only a run
+/// can show them.
+std::optional<std::uint64_t> steps_of(const Film& film) {
+    std::uint64_t steps = 0;
+    for (const BodyPlan& body : film.plan().bodies) {
         if (body.error_estimate_m)
-            steps = static_cast<double>(body.trials.back().steps);
+            steps += body.trials.back().steps;
         else if (const std::optional<double> step_s = sim::fixed_step_s(body.method))
-            steps = duration_s / *step_s;
+            steps += static_cast<std::uint64_t>(std::llround(film.scene().world.duration_s / *step_s));
         else
             return std::nullopt;
-        cost.steps += steps;
-        cost.time_s += 1e-9 * steps * sim::step_cost_ns(film.system().bodies[i], body.method);
     }
-    return cost;
+    return steps;
 }
 
 nlohmann::json to_json(const Trial& trial) {
@@ -118,15 +108,11 @@ ExitCode plan(const Console& console, const PlanOptions& options) {
     nlohmann::json json = film_json(film);
     json["terms"] = terms;
     json["frames"] = film.frame_count();
-    json["steps"] = nullptr;
-    json["cost_s"] = nullptr;
+    const std::optional<std::uint64_t> steps = steps_of(film);
+    json["steps"] = steps ? nlohmann::json(*steps) : nlohmann::json();
+    if (steps) console.result(fmt::format("expected steps: {}", *steps));
     json["bodies"] = nlohmann::json::array();
     for (std::size_t i = 0; i < film.plan().bodies.size(); ++i) json["bodies"].push_back(to_json(film, i));
-    if (const auto cost = cost_of(film)) {
-        json["steps"] = std::llround(cost->steps);
-        json["cost_s"] = cost->time_s;
-        console.result(fmt::format("expected cost: {:.0f} steps, about {:.2g} s", cost->steps, cost->time_s));
-    }
     console.report(json);
     return ExitCode::kOk;
 }
@@ -134,9 +120,8 @@ ExitCode plan(const Console& console, const PlanOptions& options) {
 }  // namespace
 
 void add_plan(CLI::App& app, Action& action) {
-    auto [command, options] =
-        add_command(app, action, "plan",
-                    "show the model, the method and the reason for it, its error and its cost", plan);
+    auto [command, options] = add_command(
+        app, action, "plan", "show the model, the method and the reason for it, and its error", plan);
     options.scene.add_to(command);
     options.scene.add_size(command);
     options.scene.add_timing(command);

@@ -162,49 +162,6 @@ void add_rope_notes(const std::string& name, const RopeDef& rope, std::vector<st
     }
 }
 
-/// Work of a run of one body to a time, in ns; std::nullopt if it diverges.
-std::optional<double> work_ns(const System& body, const WorldDef& world, const MethodDef& method,
-                              double time_s) {
-    const auto solver = sim::make_solver(body, world, {&method, 1}, time_s);
-    State state{0.0, body.x_m, body.y_m};
-    if (solver->advance_to(time_s, state) == Status::kDiverged) return std::nullopt;
-    return static_cast<double>(solver->steps()) * sim::step_cost_ns(body.bodies.front(), method);
-}
-
-/// Notes implicit steps that cost more than explicit ones, measured at the start of the motion.
-void add_costly_implicit(const Scene& scene, const System& system, const Plan& plan,
-                         std::vector<std::string>& notes) {
-    const auto is_implicit = [](const BodyPlan& body) {
-        const auto* const exact = std::get_if<ExactDef>(&body.method);
-        return exact != nullptr && exact->implicit;
-    };
-    if (std::none_of(plan.bodies.begin(), plan.bodies.end(), is_implicit)) return;
-    sim::for_each_body(system, [&](const System& body, std::size_t i) {
-        const WorldDef& world = scene.world;
-        const Body& rope = body.bodies.front();
-        if (!is_implicit(plan.bodies[i])) return;
-        const ExactDef given = std::get<ExactDef>(plan.bodies[i].method);
-        if (sim::implicit_pays(body, rope, world, given.tolerance)) return;
-        const ExactDef other{given.tolerance};
-        constexpr double kSteps = 20.0;  // as estimated; 60 to 90 were measured
-        const double frequency_1_s = sim::tension_frequency_1_s(body, rope, world, true);
-        const double time_s =
-            std::min(world.duration_s, kSteps / sim::expected_steps(other, rope, frequency_1_s, 1.0));
-        const auto work = work_ns(body, world, given, time_s);
-        const auto other_work = work_ns(body, world, other, time_s);
-        if (!work || !other_work || !(*work > *other_work)) return;
-        const double factor = *work / *other_work;
-        // The number of implicit steps grows with the inverse fourth root of the tolerance.
-        const double tolerance = view::rounded_up(given.tolerance * factor * factor * factor * factor);
-        notes.push_back(fmt::format(
-            "{}: in the first {:.2g} s, implicit steps cost {:.2g} times as much as explicit ones at the "
-            "tolerance of {:g}; leave out implicit{}",
-            body_name(system, i), time_s, factor, given.tolerance,
-            tolerance <= ExactDef::kMaxTolerance ? fmt::format(", or try a tolerance of {:g}", tolerance)
-                                                 : ""));
-    });
-}
-
 /// Notes colours of links beyond the last link.
 void add_spare_colors(const Scene& scene, const System& system, std::vector<std::string>& notes) {
     for (std::size_t i = 0; i < std::min(scene.body_styles.size(), system.bodies.size()); ++i) {
@@ -306,7 +263,6 @@ std::vector<std::string> input_notes(const Scene& scene, const System& system, c
         const NetDef& net = scene.nets[i];
         add_pinned_velocity(body_name(system, scene.ropes.size() + i), net.velocity_m_s, net.pinned, notes);
     }
-    add_costly_implicit(scene, system, plan, notes);
     add_spare_colors(scene, system, notes);
     return notes;
 }

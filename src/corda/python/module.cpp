@@ -144,14 +144,10 @@ void add_film(py::module_& module) {
         .def(py::init([](const std::string& text, const std::string& source, bool is_path,
                          const std::vector<std::string>& settings, const std::string& backend,
                          bool require_gpu) {
-            const auto [scene, notice] = Asking().run([&] {
-                corda::Scene read = is_path ? corda::load_scene(source, settings)
-                                            : corda::parse_scene(text, source, settings);
-                std::string cost = corda::cost_notice(read);
-                return std::pair(std::move(read), std::move(cost));
+            const corda::Scene scene = Asking().run([&] {
+                return is_path ? corda::load_scene(source, settings)
+                               : corda::parse_scene(text, source, settings);
             });
-            if (!notice.empty() && PyErr_WarnEx(PyExc_UserWarning, notice.c_str(), 2) != 0)
-                throw py::error_already_set();
             return std::make_unique<PyFilm>(scene, backend, require_gpu);
         }))
         .def("frame_count", [](const PyFilm& film) { return film.constant().frame_count(); })

@@ -10,11 +10,11 @@ namespace corda::scene {
 struct SceneSize {
     std::vector<std::optional<BodySize>> bodies;  ///< ropes, then nets; empty if not known
     bool has_bars = false;                        ///< whether the bars of all bodies are known
-    bool fits = true;                             ///< whether there is memory for them
+    bool fits = true;                             ///< whether they are within the limits
 };
 
-/// Counts particles and bars without making any. Too many particles or bars of all bodies together are a
-/// problem.
+/// Counts particles and bars without making any. Too many particles, bars or points of trails of all
+/// bodies together are a problem.
 [[nodiscard]] SceneSize count_bodies(const Sections& sections, const SolverSection& solver,
                                      const Scene& scene);
 
@@ -22,10 +22,5 @@ struct SceneSize {
 /// updates, by each body's own method.
 void check_work(const Sections& sections, const SolverSection& solver, const SceneSize& size,
                 const Scene& scene);
-
-/// For a scene without problems. Adds one if following a body to the end takes more than
-/// Limits::kParticleUpdates: what stretches or bends vibrates too fast or, for exact, rattle and auto, speed,
-/// gravity, drag or unequal masses do it.
-void check_motion(const Sections& sections, const Scene& scene);
 
 }  // namespace corda::scene

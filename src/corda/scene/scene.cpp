@@ -106,7 +106,6 @@ Scene parse_scene(std::string_view toml, const std::string& source_name, const s
     check_cancelled();
     check_section(sections.overlay, scene.overlay, scene.ropes);
     check_section(sections.style, scene.style, scene.ropes, scene.nets);
-    check_motion(sections, scene);
     problems.throw_if_any();
     return scene;
 }

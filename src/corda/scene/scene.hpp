@@ -146,10 +146,6 @@ struct PlacedSettings {
 [[nodiscard]] Scene parse_scene(std::string_view toml, const std::string& source_name,
                                 const std::vector<Setting>& settings = {}, const PlacedSettings& more = {});
 
-/// About how long computing the motion of a scene once may take and why, with a remedy, if that is more than
-/// a few seconds; otherwise empty. An upper estimate from the start alone.
-[[nodiscard]] std::string cost_notice(const Scene& scene);
-
 /// The particles and bars of a scene at t = 0: its ropes, then its nets.
 [[nodiscard]] System system_of(const Scene& scene);
 

@@ -20,14 +20,11 @@ struct Limits {
     static constexpr std::size_t kTextBytes = 1000;  // of a title
     static constexpr std::int64_t kParticles = 1'000'000;
     static constexpr std::int64_t kBars = 20'000'000;
-    static constexpr double kGibibytes = 8.0;  // memory of the simulation
+    static constexpr std::int64_t kFactoredParticles = 500'000;  // of a net; some 6 GB
+    static constexpr double kTrailPoints = 2e7;                  // of all trails; up to 5 GB
     static constexpr std::int64_t kFrames = 10'000'000;
     static constexpr std::int64_t kSteps = 1'000'000'000;
-    static constexpr double kBarUpdates = 1e13;       // about a day
-    static constexpr double kParticleUpdates = 1e11;  // about four hours
-    // Estimated from speed and vibrations; the larger of both counts. Some seconds of a pendulum.
-    static constexpr double kStepsOfAMotion = 1e7;
-    static constexpr double kStepsOfAFrame = 1.5e4;
+    static constexpr double kBarUpdates = 1e13;  // about a day
     static constexpr double kCoordinateMetres = 1e9;
 };
 

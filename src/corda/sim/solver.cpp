@@ -24,8 +24,6 @@ namespace {
 //
 //   static const char* problem_of(const Def&);   the parameter that is out of range; nullptr: none
 //   static std::string text_of(const Def&);      see method_text()
-//   static double step_cost_ns(const Def&, const Body&);
-//   static double expected_steps(const Def&, const Body&, double frequency_1_s, double time_s);
 //   static constexpr bool kKnowsTensions;
 template <class Def>
 struct SolverOf;
@@ -116,24 +114,35 @@ std::span<const Bar> bars_of(const System& system, const Body& body) {
     return std::span(system.bars).subspan(body.first_bar, body.bar_count);
 }
 
-/// The free mass in kg that each bar pulls: what hangs on it from the pin, or the lighter side of a chain
-/// without pins.
-std::vector<double> carried_kg(const System& system, const Body& body) {
-    double all_kg = 0.0;
-    bool is_pinned_elsewhere = false;
-    for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
-        if (!system.is_pinned(i)) all_kg += system.mass_kg[i];
-        is_pinned_elsewhere = is_pinned_elsewhere || (system.is_pinned(i) && i > body.first_particle);
+/// Bound on the angular frequency in 1/s at which the tensions at t = 0 make particles of a rigid chain with
+/// one pin swing across its links: Gershgorin's, the largest over all particles of 2 w sum of T / l. T pulls
+/// what hangs on the link, of all free mass unless the first particle is the pin, as fast as gravity and the
+/// link that turns fastest together.
+double tension_frequency_1_s(const System& system, const Body& body, const Forces& forces) {
+    const std::span<const Bar> bars = bars_of(system, body);
+    double fastest_m_s2 = 0.0;
+    for (const Bar& bar : bars) {
+        const double speed_m_s =
+            length(system.vx_m_s[bar.b] - system.vx_m_s[bar.a], system.vy_m_s[bar.b] - system.vy_m_s[bar.a]);
+        fastest_m_s2 = std::max(fastest_m_s2, speed_m_s * (speed_m_s / bar.rest_m));
     }
-    std::vector<double> carried(body.bar_count, all_kg);
-    if (!body.is_chain || is_pinned_elsewhere) return carried;
-    const double* const mass_kg = &system.mass_kg[body.first_particle];
+    const bool hangs_from_first = system.is_pinned(body.first_particle);
+    double all_kg = 0.0;
+    for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i)
+        if (!system.is_pinned(i)) all_kg += system.mass_kg[i];
+    std::vector<double> load_n_m(body.particle_count, 0.0);
     double beyond_kg = 0.0;
-    for (std::size_t k = body.link_count; k-- > 0;) carried[k] = beyond_kg += mass_kg[k + 1];
-    double before_kg = 0.0;
-    for (std::size_t k = 0; k < body.link_count && !system.is_pinned(body.first_particle); ++k)
-        carried[k] = std::min(carried[k], before_kg += mass_kg[k]);
-    return carried;
+    for (std::size_t k = bars.size(); k-- > 0;) {
+        beyond_kg += system.mass_kg[body.first_particle + k + 1];
+        const double carried_kg = hangs_from_first ? beyond_kg : all_kg;
+        const double load = carried_kg * (forces.strength_m_s2() + fastest_m_s2) / bars[k].rest_m;
+        load_n_m[k] += load;
+        load_n_m[k + 1] += load;
+    }
+    double largest = 0.0;
+    for (std::size_t i = 0; i < load_n_m.size(); ++i)
+        largest = std::max(largest, 2.0 * system.inverse_mass_1_kg[body.first_particle + i] * load_n_m[i]);
+    return std::sqrt(largest);
 }
 
 Loads larger_loads(const Loads& a, const Loads& b) {
@@ -233,10 +242,6 @@ std::string method_text(const MethodDef& method) {
     return with_solver(method, []<class S>(const auto& def) { return S::text_of(def); });
 }
 
-double step_cost_ns(const Body& body, const MethodDef& method) {
-    return with_solver(method, [&]<class S>(const auto& def) { return S::step_cost_ns(def, body); });
-}
-
 std::optional<double> fixed_step_s(const MethodDef& method) {
     return std::visit(
         [](const auto& def) -> std::optional<double> {
@@ -248,68 +253,8 @@ std::optional<double> fixed_step_s(const MethodDef& method) {
         method);
 }
 
-double expected_steps(const MethodDef& method, const Body& body, double frequency_1_s, double time_s) {
-    return with_solver(method, [&]<class S>(const auto& def) {
-        return S::expected_steps(def, body, frequency_1_s, time_s);
-    });
-}
-
-double relative_step_work(const MethodDef& method, const Body& body) {
-    return step_cost_ns(body, method) / (Exact::kParticleCostNs * static_cast<double>(body.particle_count));
-}
-
 bool knows_tensions(const MethodDef& method) {
     return with_solver(method, []<class S>(const auto&) { return S::kKnowsTensions; });
-}
-
-double vibration_frequency_1_s(const System& system, const Body& body) {
-    return std::sqrt(
-        ElasticForces(system, body.first_particle, body.particle_count).common_square_frequency());
-}
-
-double angular_velocity_1_s(const System& system, const Body& body) {
-    double largest_1_s = 0.0;
-    for (const Bar& bar : bars_of(system, body)) {
-        const double speed_m_s =
-            length(system.vx_m_s[bar.b] - system.vx_m_s[bar.a], system.vy_m_s[bar.b] - system.vy_m_s[bar.a]);
-        largest_1_s = std::max(largest_1_s, speed_m_s / bar.rest_m);
-    }
-    return largest_1_s;
-}
-
-double pendulum_frequency_1_s(const System& system, const Body& body, const Forces& forces) {
-    double shortest_m = std::numeric_limits<double>::infinity();
-    for (const Bar& bar : bars_of(system, body)) shortest_m = std::min(shortest_m, bar.rest_m);
-    return forces.inverse_timescale_1_s(shortest_m, 0.0);
-}
-
-double tension_frequency_1_s(const System& system, const Body& body, const Forces& forces,
-                             bool is_moved_by_rounding) {
-    if (body.material.compliance_1_n > 0.0) return 0.0;
-    const std::span<const Bar> bars = bars_of(system, body);
-    const Vec2 pull_m_s2 = forces.uniform_m_s2();
-    double fastest_m_s2 = 0.0;
-    bool stays = true;  // bars along gravity that do not turn
-    for (const Bar& bar : bars) {
-        const double speed_m_s =
-            length(system.vx_m_s[bar.b] - system.vx_m_s[bar.a], system.vy_m_s[bar.b] - system.vy_m_s[bar.a]);
-        fastest_m_s2 = std::max(fastest_m_s2, speed_m_s * (speed_m_s / bar.rest_m));
-        const double across = (system.x_m[bar.b] - system.x_m[bar.a]) * pull_m_s2.y -
-                              (system.y_m[bar.b] - system.y_m[bar.a]) * pull_m_s2.x;
-        stays = stays && speed_m_s == 0.0 && across == 0.0;
-    }
-    if (stays && !is_moved_by_rounding) return 0.0;
-    const std::vector<double> carried = carried_kg(system, body);
-    std::vector<double> load_n_m(body.particle_count, 0.0);
-    for (std::size_t k = 0; k < bars.size(); ++k) {
-        const double tension_n = carried[k] * (forces.strength_m_s2() + fastest_m_s2);
-        load_n_m[bars[k].a - body.first_particle] += tension_n / bars[k].rest_m;
-        load_n_m[bars[k].b - body.first_particle] += tension_n / bars[k].rest_m;
-    }
-    double largest = 0.0;
-    for (std::size_t i = 0; i < load_n_m.size(); ++i)
-        largest = std::max(largest, 2.0 * system.inverse_mass_1_kg[body.first_particle + i] * load_n_m[i]);
-    return std::sqrt(largest);
 }
 
 double most_implicit_steps_1_s(const System& system, const Body& body, const Forces& forces) {
@@ -321,14 +266,21 @@ double most_implicit_steps_1_s(const System& system, const Body& body, const For
         const double down = dot(along, forces.uniform_m_s2());
         if (is_after_pin ? down < 0.0 : down > 0.0) return 0.0;
     }
-    const ExactDef def;
-    return Exact::step_cost_ns(def, body) / Exact::step_cost_ns({def.tolerance, true}, body) *
-           Exact::expected_steps(def, body, tension_frequency_1_s(system, body, forces, true), 1.0);
+    constexpr double kFrequencyTimesStep = 5.0;  // of explicit steps
+    constexpr double kCostOfExplicit =
+        140.0 / 150.0;  // of a step, by implicit ones; ropes of 20 to 10 000 links
+    return kCostOfExplicit * tension_frequency_1_s(system, body, forces) / kFrequencyTimesStep;
 }
 
 bool implicit_pays(const System& system, const Body& body, const Forces& forces, double tolerance) {
-    return Exact::expected_steps({tolerance, true}, body, tension_frequency_1_s(system, body, forces, true),
-                                 1.0) < most_implicit_steps_1_s(system, body, forces);
+    const double most_1_s = most_implicit_steps_1_s(system, body, forces);
+    if (most_1_s == 0.0) return false;
+    // The frequency of the shortest wave over twice the number of links is that of the whole rope.
+    constexpr double kStepsOfSwing = 12.0;  // at a tolerance of 1; they grow with its inverse fourth root
+    const double steps_1_s = kStepsOfSwing / std::sqrt(std::sqrt(tolerance)) *
+                             tension_frequency_1_s(system, body, forces) /
+                             (2.0 * static_cast<double>(body.link_count));
+    return steps_1_s < most_1_s;
 }
 
 LoadMeter::LoadMeter(const System& system) {

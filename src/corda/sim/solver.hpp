@@ -78,14 +78,6 @@ class Solver : NonCopyable {
     /// with the same bits.
     [[nodiscard]] virtual std::vector<MethodDef> methods() const = 0;
 
-    /// Default of expected_steps(): an explicit method of high order that chooses its steps.
-    template <class Def>
-    [[nodiscard]] static double expected_steps(const Def& /*def*/, const Body& /*body*/, double frequency_1_s,
-                                               double time_s) {
-        constexpr double kFrequencyTimesStep = 5.0;
-        return frequency_1_s * time_s / kFrequencyTimesStep;
-    }
-
   protected:
     Solver(double energy_scale_j, bool conserves_energy)
         : energy_scale_j_(energy_scale_j), conserves_energy_(conserves_energy) {}
@@ -110,43 +102,11 @@ void validate(const MethodDef& method);
 /// The method in words: "rattle of order 4, step 0.01 s".
 [[nodiscard]] std::string method_text(const MethodDef& method);
 
-/// Rough cost of a step of a body in nanoseconds, on the machine on which the constants were measured.
-[[nodiscard]] double step_cost_ns(const Body& body, const MethodDef& method);
-
 /// The step of the definition in s; std::nullopt if it gives none or the method chooses each step.
 [[nodiscard]] std::optional<double> fixed_step_s(const MethodDef& method);
 
-/// Rough number of steps for `time_s` seconds of a motion of the body with this angular frequency, if the
-/// method chooses its steps. For a chain without compliance, `frequency_1_s` is that of
-/// tension_frequency_1_s().
-[[nodiscard]] double expected_steps(const MethodDef& method, const Body& body, double frequency_1_s,
-                                    double time_s);
-
-/// step_cost_ns() per particle, relative to a step of `exact` for a rope.
-[[nodiscard]] double relative_step_work(const MethodDef& method, const Body& body);
-
 /// False if the method never knows the tensions of bars.
 [[nodiscard]] bool knows_tensions(const MethodDef& method);
-
-// Rough estimates of the work for a scene from its start, to distinguish minutes from days.
-
-/// Bound on the angular frequency in 1/s of vibrations of a body that stretches or resists bending; 0 for any
-/// other body.
-[[nodiscard]] double vibration_frequency_1_s(const System& system, const Body& body);
-
-/// Largest angular velocity of a bar of the body at t = 0, in 1/s.
-[[nodiscard]] double angular_velocity_1_s(const System& system, const Body& body);
-
-/// Angular frequency in 1/s at which the body's shortest bar swings.
-[[nodiscard]] double pendulum_frequency_1_s(const System& system, const Body& body, const Forces& forces);
-
-/// Bound on the angular frequency in 1/s at which the tensions at t = 0 make particles of a body without
-/// compliance swing across the links: Gershgorin's, the largest over all particles of 2 w sum of T / l. T
-/// pulls what hangs on the link, of all free mass unless a rope is pinned at its first particle alone, as
-/// fast as gravity and the link that turns fastest together. 0 if no bar turns or leans, because then none
-/// ever will, unless `is_moved_by_rounding`.
-[[nodiscard]] double tension_frequency_1_s(const System& system, const Body& body, const Forces& forces,
-                                           bool is_moved_by_rounding = false);
 
 /// Number of implicit steps of `exact` per second that cost as much as explicit ones are expected to. 0 if
 /// they cannot move the body or are not tried: its links must lean down from its only pin.

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "corda/sim/rattle/rattle.hpp"
 #include "corda/sim/solver.hpp"
 #include "corda/study/problems.hpp"
 
@@ -172,16 +173,18 @@ void add_sweep(const Sweep& sweep, report::Chapter& chapter) {
 
 constexpr int kMaxHalvings = 8;
 
-/// A run that would take longer, in seconds, is left out.
-double longest_run_s(bool is_quick) {
-    return is_quick ? 0.01 : 0.3;
+/// Updates of bars or particles in a run; one of more is left out.
+double most_updates(bool is_quick) {
+    return is_quick ? 4e5 : 1e7;
 }
 
-/// About how long a run takes, in seconds.
-double forecast_s(const System& system, double duration_s, const MethodDef& method, double step_s) {
-    double step_ns = 0.0;
-    for (const Body& body : system.bodies) step_ns += sim::step_cost_ns(body, method);
-    return 1e-9 * step_ns * duration_s / step_s;
+double updates_of(const System& system, double duration_s, const MethodDef& method, double step_s) {
+    const auto* const relaxation = std::get_if<RelaxationDef>(&method);
+    const auto* const rattle = std::get_if<RattleDef>(&method);
+    const std::size_t per_step =
+        relaxation != nullptr ? system.bars.size() * static_cast<std::size_t>(relaxation->sweeps)
+                              : system.particle_count() * sim::composition(rattle->order).stages.size();
+    return static_cast<double>(per_step) * duration_s / step_s;
 }
 
 void add_relaxation(const Problem& problem, bool is_quick, std::vector<SweepRun>& runs) {
@@ -200,8 +203,8 @@ void add_relaxation(const Problem& problem, bool is_quick, std::vector<SweepRun>
             for (int halving = 0; halving <= kMaxHalvings; halving += is_quick ? 2 : 1) {
                 const double step_s = std::ldexp(longest_step_s, -halving);
                 const MethodDef method = RelaxationDef{step_s, sweeps};
-                const double run_s = forecast_s(system, problem.world.duration_s, method, step_s);
-                if (halving > 0 && (is_refused || run_s > longest_run_s(is_quick))) break;
+                const double updates = updates_of(system, problem.world.duration_s, method, step_s);
+                if (halving > 0 && (is_refused || updates > most_updates(is_quick))) break;
                 runs.push_back({method, label, step_s, reach});
             }
         }
@@ -227,8 +230,8 @@ void add_rattle(const Problem& problem, bool is_quick, std::vector<SweepRun>& ru
             const double finer = std::exp2(static_cast<double>(point) / points_per_halving);
             const double step_s = frame_s / std::round(steps_per_frame * finer);
             const MethodDef method = RattleDef{order, step_s};
-            const double run_s = forecast_s(system, problem.world.duration_s, method, step_s);
-            if (point > 0 && run_s > longest_run_s(is_quick)) break;
+            const double updates = updates_of(system, problem.world.duration_s, method, step_s);
+            if (point > 0 && updates > most_updates(is_quick)) break;
             runs.push_back({method, label, step_s});
         }
     }

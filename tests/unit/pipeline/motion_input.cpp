@@ -123,25 +123,6 @@ TEST(Notes, ReportPayloadOnAPinAndBendingWithoutAJoint) {
                 ElementsAre(HasSubstr("bending changes nothing")));
 }
 
-TEST(Notes, ReportImplicitStepsThatDoNotPay) {
-    const auto rope = [](const std::string& hang, const std::string& tolerance) {
-        return notes_of("[[rope]]\nhang = { " + hang + " }\n[solver]\nmethod = \"exact\"\nimplicit = true\n" +
-                        "tolerance = " + tolerance + "\n");
-    };
-    EXPECT_THAT(rope("links = 400, length = 1, angle_deg = 30", "1e-4"), IsEmpty());
-    EXPECT_THAT(
-        rope("links = 400, length = 1, angle_deg = 30", "1e-9"),
-        ElementsAre(AllOf(StartsWith("rope 0: in the first 0.04 s, implicit steps cost "),
-                          HasSubstr(" times as much as explicit ones at the tolerance of 1e-09; leave "
-                                    "out implicit, or try a tolerance of "))));
-    EXPECT_THAT(rope("links = 4, length = 1, angle_deg = 30", "3e-3"),
-                ElementsAre(EndsWith("at the tolerance of 0.003; leave out implicit")));
-    // Links that rise move faster and faster; a level rope still gains by implicit steps.
-    EXPECT_THAT(rope("links = 200, length = 1, angle_deg = 150", "1e-4"),
-                ElementsAre(HasSubstr("leave out")));
-    EXPECT_THAT(rope("links = 400, length = 1, angle_deg = 91", "1e-4"), IsEmpty());
-}
-
 TEST(Notes, ReportColoursBeyondTheLastLink) {
     EXPECT_THAT(notes_of("style.color_by = \"link\"\n[[rope]]\nhang = { links = 2, length = 1 }\n"
                          "color = [\"red\", \"blue\", \"red\"]\n"),

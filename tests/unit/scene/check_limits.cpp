@@ -8,9 +8,7 @@
 namespace corda::scene {
 namespace {
 
-using testing::AllOf;
 using testing::HasSubstr;
-using testing::Not;
 using testing::StartsWith;
 
 std::string line_of(const std::string& particles) {
@@ -82,10 +80,11 @@ TEST(SceneLimits, BarUpdatesOfNets) {
         "3994002 bars, 1000000 sweeps and 600 steps are 2.3964e+15 bar updates");
 }
 
-TEST(SceneLimits, MemoryOfWhatFactorsOfANetFillIn) {
+TEST(SceneLimits, ParticlesOfANetWhoseBarsAreFactored) {
     const std::string net =
-        "schema = 1\n[[net]]\ngrid = { columns = 1000, rows = 1000, spacing = 0.001, diagonals = true }\n";
-    expect_limit(net, "swing.toml:2:1: net[0]: ", "take some 11 GiB of memory, over the limit of 8");
+        "schema = 1\n[[net]]\ngrid = { columns = 1000, rows = 501, spacing = 0.001, diagonals = true }\n";
+    expect_limit(net, "swing.toml:2:1: net[0]: ",
+                 "501000 particles are over the limit of 500000 for a net that relaxation does not move");
     EXPECT_NO_THROW(static_cast<void>(parse_scene(net + "[solver]\nmethod = \"relaxation\"\n", "a")));
 }
 
@@ -133,11 +132,9 @@ TEST(SceneLimits, BarUpdates) {
                  "swing.toml:6:8: solver.step: ", "bar updates");
 }
 
-/// A long rope, then a short one that turns too fast for all methods but relaxation.
+/// A long rope, then a short one.
 std::string two_ropes_with(const std::string& solver) {
-    return line_of("900000") +
-           "[[rope]]\nline = { particles = 3, step = [0, -1] }\nvelocity = [[0, 0], [1e12, 0], [1e12, 0]]\n" +
-           solver;
+    return line_of("900000") + "[[rope]]\nline = { particles = 3, step = [0, -1] }\n" + solver;
 }
 
 TEST(SceneLimits, StepsOfEachBodysSolver) {
@@ -159,11 +156,11 @@ TEST(SceneLimits, BarUpdatesOfEachBodysSolver) {
     const std::string second = "[[solver.bodies]]\nropes = [1]\n" + relaxation;
     // 899999 and 2 bars.
     EXPECT_NO_THROW(std::ignore = parse_scene(two_ropes_with(first + second + sweeps), "a"));
-    expect_limit(two_ropes_with(first + sweeps + second), "swing.toml:11:10: solver.bodies[0].sweeps: ",
+    expect_limit(two_ropes_with(first + sweeps + second), "swing.toml:10:10: solver.bodies[0].sweeps: ",
                  "899999 bars, 1000000 sweeps and 600 steps are 5.39999e+14 bar updates");
     expect_limit(
         two_ropes_with(first + "sweeps = 18500\n" + second + "step = 2e-8\nsweeps = 5000\n"),
-        "swing.toml:17:10: solver.bodies[1].sweeps: ",
+        "swing.toml:16:10: solver.bodies[1].sweeps: ",
         "2 bars, 5000 sweeps and 5e+08 steps, with those of other methods, are 1.499e+13 bar updates");
 }
 
@@ -174,24 +171,15 @@ TEST(SceneLimits, ReachOfEachBodysSolver) {
     EXPECT_NO_THROW(std::ignore = parse_scene(two_ropes_with("[[solver.bodies]]\nropes = [1]\n" + far), "a"));
 }
 
-TEST(SceneLimits, PaceOfEachBodysSolver) {
-    const std::string relaxation = "method = \"relaxation\"\nreach = 1\n";
-    expect_limit(two_ropes_with(""), "swing.toml:6:12: rope[1].velocity: ", "turns so fast");
-    expect_limit(two_ropes_with("[solver]\n" + relaxation + "[[solver.bodies]]\nropes = [1]\n" +
-                                "method = \"exact\"\n[world]\ndrag = 1e12\n"),
-                 "swing.toml:14:8: world.drag: ", "slows down");
-    EXPECT_NO_THROW(std::ignore =
-                        parse_scene(two_ropes_with("[[solver.bodies]]\nropes = [1]\n" + relaxation), "a"));
-}
-
-TEST(SceneLimits, MemoryOfTrails) {
+TEST(SceneLimits, PointsOfTrails) {
     std::string ropes;
     for (int i = 0; i < 20'000; ++i) ropes += "[[rope]]\nline = { particles = 2, step = [0.1, -1.0] }\n";
-    const std::string long_motion = "schema = 1\n[world]\nduration = 75.0\n";
+    const std::string long_motion = "schema = 1\n[world]\nduration = 20.0\n";
     EXPECT_NO_THROW(std::ignore = parse_scene(long_motion + ropes, "a"));
-    // 360 kB of points and 104 kB in a picture, for each.
-    expect_limit(long_motion + "[style]\ntrail_s = 6.0\n" + ropes, "swing.toml:", "no style.trail_s");
-    EXPECT_NO_THROW(std::ignore = parse_scene(long_motion + "[style]\ntrail_s = 0.5\n" + ropes, "a"));
+    expect_limit(
+        long_motion + "[style]\ntrail_s = 6.0\n" + ropes, "swing.toml:33338:1: rope[16666]: ",
+        "20000400 points in trails, over the limit of 20000000; give style.trail_of fewer particles");
+    EXPECT_NO_THROW(std::ignore = parse_scene(long_motion + "[style]\ntrail_s = 20.0\n" + ropes, "a"));
     std::string twice = "0";  // two particles, however often they are named
     for (int i = 0; i < 4000; ++i) twice += ", -1";
     EXPECT_NO_THROW(std::ignore = parse_scene(
@@ -203,121 +191,6 @@ TEST(SceneLimits, MemoryOfTrails) {
 TEST(SceneLimits, FileSize) {
     const std::string large(static_cast<std::size_t>(Limits::kFileBytes) + 1, '\n');
     expect_limit(large, "swing.toml: ", "over the limit of 16777216 bytes");
-}
-
-TEST(Limits, OfHowFastABodyMayMove) {
-    const std::string world = "schema = 1\n[world]\nduration = 0.2\n";
-    const std::string rope = "[[rope]]\nhang = { links = 10, length = 1.0, angle_deg = 60.0 }\n";
-    const std::string free = rope + "pinned = []\nvelocity = [1e12, 0.0]\n";  // nothing turns
-    EXPECT_NO_THROW(std::ignore = parse_scene(world + "gravity = 1e12\n" + rope, "a"));
-    EXPECT_NO_THROW(std::ignore =
-                        parse_scene(world + "drag = 1e6\n" + rope + "velocity = [1e5, 0.0]\n", "a"));
-    EXPECT_NO_THROW(std::ignore = parse_scene(world + free, "a"));
-    const std::string hanging = "[[rope]]\nhang = { links = 1000, length = 10.0, angle_deg = 5.0 }\n";
-    EXPECT_NO_THROW(std::ignore = parse_scene(world + "drag = -0.0\n" + hanging, "a"));
-    const std::string relaxation = "[solver]\nmethod = \"relaxation\"\n";
-    EXPECT_NO_THROW(std::ignore = parse_scene(world + rope + "velocity = [1e12, 0.0]\n" + relaxation, "a"));
-    for (const auto& [text, place] :
-         {std::pair{world + "gravity = 1e24\n" + rope, "a.toml:4:11: world.gravity: "},
-          {world + "drag = 1e15\n" + rope, "a.toml:4:8: world.drag: "},
-          {world + "drag = 1e99\n" + rope, "a.toml:4:8: world.drag: "},
-          {world + rope + "velocity = [1e12, 0.0]\n", "a.toml:6:12: rope[0].velocity: "}}) {
-        try {
-            static_cast<void>(parse_scene(text, "a.toml"));
-            ADD_FAILURE() << text;
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::kInvalidScene);
-            EXPECT_THAT(error.what(), testing::StartsWith(place));
-            EXPECT_THAT(error.what(),
-                        testing::ContainsRegex("steps or [^ ]+ (s|min|h), [^ ]+ times the limit; give less"));
-        }
-    }
-}
-
-TEST(Limits, OfHowFastABodyMayVibrate) {
-    const std::string rope = "schema = 1\n[[rope]]\nhang = { links = 10, length = 1.0, angle_deg = 60.0 }\n";
-    EXPECT_NO_THROW(std::ignore = parse_scene(rope + "compliance = 1e-9\n", "a"));
-    EXPECT_NO_THROW(std::ignore = parse_scene(rope + "bending = 100.0\n", "a"));
-    for (const char* stiff :
-         {"compliance = 1e-300\n", "compliance = 1e-22\n", "bending = 1e12\nmass = 1e-12\n"}) {
-        try {
-            static_cast<void>(parse_scene(rope + stiff, "a.toml"));
-            ADD_FAILURE() << stiff;
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::kInvalidScene);
-            EXPECT_THAT(error.what(), testing::HasSubstr("a.toml:4:"));
-            EXPECT_THAT(error.what(), testing::HasSubstr("vibrates so fast"));
-        }
-    }
-}
-
-TEST(Limits, NameTheMassesThatAPlanCanFollow) {
-    const std::string rope =
-        "schema = 1\n[[rope]]\nhang = { links = 20, length = 1.0, angle_deg = 90 }\nmass = 1e-6\n";
-    expect_limit(rope + "payload = 1e6\n", "swing.toml:5:11: rope[0].payload: ",
-                 "less unequal masses of free particles (a ratio of at most 3e+10; it is 1e+12)");
-    EXPECT_NO_THROW(std::ignore = parse_scene(rope + "payload = 3e4\n", "a"));
-    EXPECT_NO_THROW(std::ignore = parse_scene(rope + "payload = 1e6\n[world]\nduration = 1.0\n", "a"));
-}
-
-TEST(Limits, OfWhatNoMethodFollowsWithinSeconds) {
-    const std::string hang = "[[rope]]\nhang = { links = 10, length = 1.0, angle_deg = 45 }\n";
-    for (const char* method : {"auto", "exact", "rattle"}) {
-        const std::string solver = "schema = 1\nsolver.method = \"" + std::string(method) + "\"\n";
-        expect_limit(solver + "world.gravity = 1e18\n" + hang,
-                     "swing.toml:3:17: world.gravity: ", "swings so fast");
-        expect_limit(solver + hang + "velocity = [1e9, 0]\n",
-                     "swing.toml:5:12: rope[0].velocity: ", "turns so fast");
-        expect_limit(solver + hang + "compliance = 1e-12\n",
-                     "swing.toml:5:14: rope[0].compliance: ", "vibrates so fast");
-        expect_limit(solver + hang + "bending = 1e12\n",
-                     "swing.toml:5:11: rope[0].bending: ", "vibrates so fast");
-    }
-    // It hangs still.
-    EXPECT_NO_THROW(
-        std::ignore = parse_scene(
-            "schema = 1\nworld.gravity = 1e18\n[[rope]]\nhang = { links = 10, length = 1.0 }\n", "a"));
-}
-
-std::string notice_of(const std::string& toml) {
-    return cost_notice(parse_scene("schema = 1\n" + toml, "swing.toml"));
-}
-
-TEST(CostNotice, IsGivenOfAMotionThatTakesLongWithItsReason) {
-    const std::string rope = "[[rope]]\nhang = { links = 20, length = 1.0, angle_deg = 90 }\n";
-    EXPECT_THAT(
-        notice_of(rope + "mass = 1e-4\npayload = 1e6\n"),
-        AllOf(StartsWith("computing 10 s of motion may take 17 s: rope 0 is pulled so hard"),
-              HasSubstr("less unequal masses of free particles (a ratio of at most 8e+08; it is 1e+10)")));
-    EXPECT_THAT(notice_of("world.drag = 4e6\n[[rope]]\nhang = { links = 20, length = 1.0 }\n"),
-                AllOf(HasSubstr("may take 24 s: rope 0 slows down"), HasSubstr("give less drag")));
-    EXPECT_THAT(notice_of("world.duration = 0.05\n[[rope]]\nstring = true\n"
-                          "hang = { links = 30000, length = 3.0 }\n"),
-                AllOf(HasSubstr("may take 12 s"), Not(HasSubstr("masses"))));  // measured 20 s
-    EXPECT_THAT(notice_of("world.duration = 0.05\n[solver]\nmethod = \"rattle\"\n[[rope]]\n"
-                          "hang = { links = 30000, length = 3.0 }\n"),
-                HasSubstr("may take 70 s"));  // measured 77 s
-    EXPECT_THAT(notice_of("world.duration = 1.0\n[solver]\nmethod = \"rattle\"\norder = 8\n[[rope]]\n"
-                          "hang = { links = 2000, length = 3.0, angle_deg = 80 }\n"),
-                HasSubstr("may take 19 s"));  // measured 20 s
-    EXPECT_THAT(notice_of("world.duration = 0.05\n[[net]]\ngrid = { rows = 50, columns = 50, spacing = 0.01, "
-                          "diagonals = true }\n"
-                          "string = true\ncompliance = 1e-5\n"),
-                HasSubstr("may take 42 s"));  // measured 37 s
-    const std::string plate =
-        notice_of("[[net]]\ngrid = { rows = 80, columns = 80, spacing = 0.02, diagonals = true }\n");
-    EXPECT_THAT(plate, AllOf(HasSubstr("give less speed or gravity, fewer particles or")));
-    EXPECT_THAT(
-        notice_of("[solver]\nmethod = \"relaxation\"\nreach = 1\nsweeps = 100\nstep = 0.00001\n" + rope),
-        HasSubstr("takes 1e+06 steps; give a longer step"));
-}
-
-TEST(CostNotice, IsNotGivenOfAMotionThatTakesASecond) {
-    EXPECT_EQ(notice_of("[[rope]]\nhang = { links = 40, length = 1.0, angle_deg = 90 }\n"), "");
-    EXPECT_EQ(notice_of("[[rope]]\nhang = { links = 1000, length = 1.0, angle_deg = 0 }\n"), "");
-    EXPECT_EQ(notice_of("world.duration = 0.05\n[solver]\nmethod = \"rattle\"\n[[net]]\n"
-                        "grid = { rows = 60, columns = 60, spacing = 0.01, diagonals = true }\n"),
-              "");
 }
 
 }  // namespace

@@ -131,27 +131,6 @@ std::string Exact::text_of(const ExactDef& def) {
     return fmt::format("exact at tolerance {:.3g}{}", def.tolerance, def.implicit ? ", implicit steps" : "");
 }
 
-double Exact::step_cost_ns(const ExactDef& def, const Body& body) {
-    if (def.implicit) return kParticleCostOfImplicitNs * static_cast<double>(body.particle_count);
-    // A rigid string is searched for events in every step.
-    constexpr double kOfAString = 2.5;
-    constexpr double kOfANet = 0.032;  // grids of 30 x 30 to 200 x 200, times the root of their particles
-    const auto particles = static_cast<double>(body.particle_count);
-    const bool is_rigid = body.material.compliance_1_n == 0.0;
-    const double share = is_rigid && !body.is_chain            ? std::max(1.0, kOfANet * std::sqrt(particles))
-                         : is_rigid && body.material.is_string ? kOfAString
-                                                               : 1.0;
-    return share * kParticleCostNs * particles;
-}
-
-double Exact::expected_steps(const ExactDef& def, const Body& body, double frequency_1_s, double time_s) {
-    if (!def.implicit) return Solver::expected_steps(def, body, frequency_1_s, time_s);
-    // The frequency of the shortest wave over twice the number of links is that of the whole rope.
-    constexpr double kStepsOfSwing = 12.0;  // at a tolerance of 1; they grow with its inverse fourth root
-    return kStepsOfSwing / std::sqrt(std::sqrt(def.tolerance)) * frequency_1_s * time_s /
-           (2.0 * static_cast<double>(body.link_count));
-}
-
 Status Exact::advance_to(double time_s, State& state) {
     const FlushDenormals flush;
     state.time_s = time_s;

@@ -34,13 +34,8 @@ class Exact : public Solver {
 
     // Facts about the method: see solver.cpp.
     static constexpr bool kKnowsTensions = true;
-    static constexpr double kParticleCostNs = 140.0;  ///< of a step of a rope, at 20 to 1000 particles
-    static constexpr double kParticleCostOfImplicitNs = 150.0;  ///< at 100 to 10 000; 200 at 100 000
     [[nodiscard]] static const char* problem_of(const ExactDef& def);
     [[nodiscard]] static std::string text_of(const ExactDef& def);
-    [[nodiscard]] static double step_cost_ns(const ExactDef& def, const Body& body);
-    [[nodiscard]] static double expected_steps(const ExactDef& def, const Body& body, double frequency_1_s,
-                                               double time_s);
 
     Status advance_to(double time_s, State& state) final;
     [[nodiscard]] double energy_j() const override { return dynamics().energy_j(output_.data()); }

@@ -58,6 +58,7 @@ constexpr double kJoinShare = 0.8;
 /// A step is divided into at most 2^24 parts, so that a step of 1 s can follow frequencies of 1e7 / s.
 constexpr int kMaxLevel = 24;
 constexpr std::uint64_t kMinParts = std::uint64_t{1} << kMaxLevel;
+constexpr double kMaxStepsPerFrame = 1e7;
 /// A stage whose kick is below this share of its span does not determine the tension.
 constexpr double kShortKick = 1e-3;
 
@@ -117,7 +118,16 @@ Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def,
                                            system, kLoadFactor * forces_.strength_m_s2(), grid_.multiplier) +
                                        std::max(elastic_square, elastic_.common_square_frequency());
         const double stable_s = guard_ * composition_.stable_omega_h / std::sqrt(expected_square);
-        step_s_ = frame_interval_s / std::max(1.0, std::ceil(frame_interval_s / stable_s));
+        const double steps = std::max(1.0, std::ceil(frame_interval_s / stable_s));
+        if (!(steps <= kMaxStepsPerFrame)) {
+            throw Refusal(
+                Refusal::Reason::kDefinition,
+                fmt::format("its particles vibrate so fast that a frame takes {:.2g} steps of method "
+                            "rattle, over the limit of {:g}; give more compliance, less bending, "
+                            "heavier particles or less gravity",
+                            steps, kMaxStepsPerFrame));
+        }
+        step_s_ = frame_interval_s / steps;
     }
     assert(step_s_ > 0.0);
 }
@@ -132,24 +142,6 @@ const char* Rattle::problem_of(const RattleDef& def) {
 std::string Rattle::text_of(const RattleDef& def) {
     return fmt::format("rattle of order {}", def.order) +
            (def.step_s ? fmt::format(", step {:.6g} s", *def.step_s) : "");
-}
-
-double Rattle::step_cost_ns(const RattleDef& def, const Body& body) {
-    // Per particle and stage.
-    constexpr double kUsual = 0.19 * 140.0;  // chains of 300 to 30 000 links
-    constexpr double kRigidGraph = 500.0;    // the factorisation of a cloth of 40 x 30
-    const bool is_rigid_graph = !body.is_chain && body.material.compliance_1_n == 0.0;
-    const auto stages = static_cast<double>(composition(def.order).stages.size());
-    return (is_rigid_graph ? kRigidGraph : kUsual) * stages * static_cast<double>(body.particle_count);
-}
-
-double Rattle::expected_steps(const RattleDef& def, const Body& body, double frequency_1_s, double time_s) {
-    const bool is_elastic = body.material.compliance_1_n > 0.0;
-    // A rigid net that keeps its shape takes few steps, and the tensions of others are not known from the
-    // start.
-    if (!is_elastic && !body.is_chain) return Solver::expected_steps(def, body, frequency_1_s, time_s);
-    const double allowed_1_s = is_elastic ? frequency_1_s : std::sqrt(kLoadFactor) * frequency_1_s;
-    return allowed_1_s * time_s / (def.guard * composition(def.order).stable_omega_h);
 }
 
 Status Rattle::advance_to(double time_s, State& state) {

@@ -50,10 +50,6 @@ class Rattle final : public Solver {
     static constexpr bool kKnowsTensions = true;
     [[nodiscard]] static const char* problem_of(const RattleDef& def);
     [[nodiscard]] static std::string text_of(const RattleDef& def);
-    [[nodiscard]] static double step_cost_ns(const RattleDef& def, const Body& body);
-    /// Allows for kLoadFactor times the weight.
-    [[nodiscard]] static double expected_steps(const RattleDef& def, const Body& body, double frequency_1_s,
-                                               double time_s);
 
     Status advance_to(double time_s, State& state) override;
     [[nodiscard]] double energy_j() const override;

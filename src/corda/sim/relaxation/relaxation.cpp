@@ -130,11 +130,6 @@ std::string Relaxation::text_of(const RelaxationDef& def) {
            (def.step_s ? fmt::format(", step {:.6g} s", *def.step_s) : "");
 }
 
-double Relaxation::step_cost_ns(const RelaxationDef& def, const Body& body) {
-    constexpr double kPerBarAndSweep = 8.0;
-    return kPerBarAndSweep * static_cast<double>(body.bar_count) * def.sweeps;
-}
-
 Status Relaxation::advance_to(double time_s, State& state) {
     const FlushDenormals flush;
     const GridTime at = locate(time_s, step_s_);

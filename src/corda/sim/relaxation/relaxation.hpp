@@ -23,7 +23,6 @@ class Relaxation final : public Solver {
     static constexpr bool kKnowsTensions = false;
     [[nodiscard]] static const char* problem_of(const RelaxationDef& def);
     [[nodiscard]] static std::string text_of(const RelaxationDef& def);
-    [[nodiscard]] static double step_cost_ns(const RelaxationDef& def, const Body& body);
 
     Status advance_to(double time_s, State& state) override;
     [[nodiscard]] double energy_j() const override;
