@@ -60,7 +60,7 @@ std::vector<Writable> writable(const std::vector<media::EncoderProbe>& encoders)
     std::vector<Writable> list;
     for (const media::EncoderProbe& encoder : encoders) {
         if (list.empty() || list.back().ending != encoder.ending) list.push_back({encoder.ending, {}, {}});
-        if (encoder.usable)
+        if (encoder.reason.empty())
             list.back().usable.push_back(encoder.name);
         else
             list.back().missing.push_back(fmt::format("{}: {}", encoder.name, encoder.reason));
@@ -79,31 +79,18 @@ void print_formats(const Console& console, const std::vector<Writable>& formats)
     }
 }
 
-/// The last word on a machine without a usable platform.
-std::string cannot_draw(const std::vector<gl::Attempt>& attempts) {
-    const bool has_remedy_above = std::ranges::any_of(attempts, [](const gl::Attempt& attempt) {
-        return attempt.info.has_value() || attempt.platform == gl::kEveryPlatform;
-    });
-    return has_remedy_above ? "This machine cannot draw, for the reason above."
-                            : "This machine cannot draw. " + gl::driver_remedy();
-}
-
 ExitCode doctor(const Console& console) {
-    // First, while there are no threads of a driver: each is tried in a child process.
     const std::vector<media::EncoderProbe> encoders = media::probe_encoders();
-    const std::vector<gl::Attempt> attempts = gl::probe_contexts(
-        [](const gl::Context& context) { render::check_driver(context); }, render::try_driver);
+    const std::vector<gl::Attempt> attempts =
+        gl::probe_contexts([](const gl::Context& context) { render::check_driver(context); });
     const bool has_gl = std::ranges::any_of(attempts, &gl::Attempt::is_usable);
     const bool is_temporary =
         std::ranges::any_of(attempts, [](const gl::Attempt& a) { return a.code == ExitCode::kTemporary; });
     print_contexts(console, attempts);
-    const std::string dropped = gl::dropped_variable();
-    if (!dropped.empty())
-        console.result(fmt::format(
-            "  {} is ignored: llvmpipe crashes with it, and pictures do not depend on it", dropped));
     const std::vector<Writable> formats = writable(encoders);
     print_formats(console, formats);
-    console.result(has_gl ? "This machine can draw." : cannot_draw(attempts));
+    console.result(has_gl ? "This machine can draw."
+                          : fmt::format("This machine cannot draw. {}", gl::kDriverRemedy));
     std::vector<std::string> written;
     std::vector<std::string> missing;
     for (const Writable& format : formats)
@@ -117,14 +104,13 @@ ExitCode doctor(const Console& console) {
                                        : fmt::format(": apt-get install {}", media::libavcodec_package())));
     }
     nlohmann::json json = {{"schema", 1}, {"can_draw", has_gl}, {"can_write", written}};
-    if (!dropped.empty()) json["ignored_variable"] = dropped;
     json["contexts"] = nlohmann::json::array();
     for (const gl::Attempt& attempt : attempts) json["contexts"].push_back(to_json(attempt));
     json["encoders"] = nlohmann::json::array();
     for (const media::EncoderProbe& encoder : encoders) {
         json["encoders"].push_back({{"ending", encoder.ending},
                                     {"name", encoder.name},
-                                    {"usable", encoder.usable},
+                                    {"usable", encoder.reason.empty()},
                                     {"reason", encoder.reason}});
     }
     console.report(json);

@@ -56,7 +56,7 @@ Context::Context(const ContextDef& def) {
             ? "Install the GPU's driver, or draw on the CPU, which gives the same bytes: do not require a GPU"
         : def.backend != ContextDef::Backend::kAuto
             ? "Take backend auto, or one that `corda doctor` shows as usable"
-            : driver_remedy();
+            : std::string(kDriverRemedy);
     throw_error(ExitCode::kNoGl, "no usable OpenGL. Tried:{}\n{}", reasons, remedy);
 }
 
@@ -109,8 +109,7 @@ SavedContext::~SavedContext() {
     eglBindAPI(api_);
 }
 
-std::vector<Attempt> probe_contexts(const std::function<void(const Context&)>& check,
-                                    const std::function<void(const ContextDef&)>& before) {
+std::vector<Attempt> probe_contexts(const std::function<void(const Context&)>& check) {
     const auto lock = lock_driver();
     const SavedContext saved;
     std::vector<Attempt> attempts;
@@ -120,12 +119,11 @@ std::vector<Attempt> probe_contexts(const std::function<void(const Context&)>& c
         prepare_driver();
         platforms = list_platforms({});
     } catch (const Error& error) {
-        return {{kEveryPlatform, std::nullopt, error.what(), error.code()}};
+        return {{"every platform", std::nullopt, error.what(), error.code()}};
     }
     for (const Platform& platform : platforms) {
         Attempt& attempt = attempts.emplace_back(Attempt{platform.name, std::nullopt, "", ExitCode::kOk});
         try {
-            if (before) before(platform.def);
             const Context context(platform);
             attempt.info = context.info();
             if (check) check(context);

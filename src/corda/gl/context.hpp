@@ -39,12 +39,9 @@ struct ContextInfo {
     bool software = false;  ///< renders on the CPU: llvmpipe, softpipe or swrast
 };
 
-/// Attempt::platform if no platform can be tried.
-inline constexpr const char* kEveryPlatform = "every platform";
-
 /// The outcome of trying one platform.
 struct Attempt {
-    std::string platform;             ///< e.g. "EGL device 0 (/dev/dri/card0)"
+    std::string platform;  ///< "EGL device 0 (/dev/dri/card0)"; "every platform" if none can be tried
     std::optional<ContextInfo> info;  ///< empty if there is no context
     std::string failure;              ///< the step that failed and the reason; empty if usable
     ExitCode code = ExitCode::kOk;    ///< of the failure
@@ -56,8 +53,8 @@ struct Attempt {
 class Context : NonCopyable {
   public:
     /// Tries EGL devices (GPUs first), Mesa's surfaceless platform and the default display, in this order, or
-    /// only the platforms that `def` names. Throws corda::Error: kNoGl with the reason of every failure if no
-    /// platform works, kTemporary if memory is too small.
+    /// only the platforms that `def` names. Throws corda::Error (kNoGl) with the reason of every failure if
+    /// no platform works.
     explicit Context(const ContextDef& def = {});
     ~Context();
 
@@ -79,8 +76,7 @@ class Context : NonCopyable {
     [[nodiscard]] const std::string& platform() const;
 
   private:
-    friend std::vector<Attempt> probe_contexts(const std::function<void(const Context&)>& check,
-                                               const std::function<void(const ContextDef&)>& before);
+    friend std::vector<Attempt> probe_contexts(const std::function<void(const Context&)>& check);
     explicit Context(const Platform& platform);
 
     struct Impl;
@@ -104,10 +100,8 @@ class SavedContext : NonCopyable {
     pid_t process_;
 };
 
-/// Tries every platform. Calls `before` with the definition that selects a platform before its context is
-/// made, and `check` with the context while it is current; an exception from either is the platform's
-/// failure. The thread's current context stays current.
-[[nodiscard]] std::vector<Attempt> probe_contexts(const std::function<void(const Context&)>& check = {},
-                                                  const std::function<void(const ContextDef&)>& before = {});
+/// Tries every platform. Calls `check` with the context while it is current; an exception from it is the
+/// platform's failure. The thread's current context stays current.
+[[nodiscard]] std::vector<Attempt> probe_contexts(const std::function<void(const Context&)>& check = {});
 
 }  // namespace corda::gl

@@ -182,7 +182,6 @@ void SceneRenderer::open(Needs needs) {
     if (canvas_) {
         canvas_->context.make_current();
     } else {
-        render::try_driver(gl_);
         canvas_ = OwnedCanvas(new Canvas(gl_));
     }
     if (needs == Needs::kContext || (canvas_->renderer && !has_others_)) return;

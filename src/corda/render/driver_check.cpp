@@ -3,16 +3,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
-#include <tuple>
 
 #include <fmt/format.h>
 
-#include "corda/core/child_process.hpp"
 #include "corda/core/text.hpp"
 #include "corda/gl/driver.hpp"
 #include "corda/view/draw_list.hpp"
@@ -23,9 +19,6 @@ namespace {
 // Larger than a tile of llvmpipe (64 pixels), and not a multiple of it.
 constexpr int kWidth = 88;
 constexpr int kHeight = 72;
-
-/// A trial takes 0.1 s; its memory is not limited.
-constexpr ChildLimits kTrialLimits{std::uint64_t{1} << 46U, 10, 10.0};
 
 /// A gradient with lines and discs, with and without halo, wide and thin, opaque and faded, in opaque and
 /// transparent layers, which overlap and extend beyond the edge; some are tinted if `with_tints`. `shift_px`
@@ -65,47 +58,7 @@ std::optional<std::string> first_difference(const Image& drawn, const Image& wan
     return std::nullopt;
 }
 
-/// Makes a context and draws in a child process. Returns how the child ended, e.g. "crashed (Aborted)"; empty
-/// if it finished; std::nullopt if the outcome is unknown: a child of a process with other threads may wait
-/// for a lock that one of them held, so its hanging is no evidence against the driver.
-std::optional<std::string> fate_of_trial(const gl::ContextDef& def) {
-    const auto draw = [&def]() -> std::string {
-        // A terminal sends signals to both processes. The parent handles them and ends the child.
-        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_IGN);
-        try {
-            const gl::Context context(def);
-            check_driver(context);
-        } catch (const Error&) {  // the parent will throw it too
-        }
-        return {};
-    };
-    const bool may_wait_for_locks = has_other_threads();
-    const auto end = run_in_child(draw, kTrialLimits);
-    if (!end || (may_wait_for_locks && end->outcome == ChildEnd::Outcome::kTimedOut)) return std::nullopt;
-    return end->finished() ? "" : end->text;
-}
-
 }  // namespace
-
-void try_driver(const gl::ContextDef& def) {
-    using Key = std::tuple<gl::ContextDef::Backend, std::optional<int>, bool, std::string>;
-    static std::map<Key, std::string> fates;  // one trial per set of variables
-    const auto lock = gl::lock_driver();
-    if (!gl::has_unusual_variables()) return;
-    const Key key{def.backend, def.device, def.require_gpu, gl::driver_variables()};
-    auto known = fates.find(key);
-    if (known == fates.end()) {
-        gl::prepare_driver();
-        const auto fate = fate_of_trial(def);
-        if (!fate) return;
-        known = fates.emplace(key, *fate).first;
-    }
-    if (known->second.empty()) return;
-    throw_error(ExitCode::kNoGl,
-                "the OpenGL driver {} when it was tried in a child process\nUnset what chooses or changes "
-                "the driver: {}",
-                known->second, gl::driver_variables());
-}
 
 void check_driver(const gl::Context& context, const FrameRenderer& renderer, bool with_tints) {
     static std::set<std::string> checked;
@@ -123,11 +76,11 @@ void check_driver(const gl::Context& context, const FrameRenderer& renderer, boo
         const auto difference = first_difference(small.image(), render_reference(list));
         if (!difference) continue;
         gl::note_faulty_driver();
-        const std::string variables = gl::driver_variables();
-        throw_error(ExitCode::kNoGl, "the driver draws wrongly: {}. Driver: {}\n{}", *difference, driver,
-                    variables.empty() ? "Choose another driver by --backend (`corda doctor` checks each), or "
-                                        "install another version of it"
-                                      : "Unset what chooses or changes the driver: " + variables);
+        throw_error(
+            ExitCode::kNoGl,
+            "the driver draws wrongly: {}. Driver: {}\nChoose another one by --backend (`corda doctor` "
+            "checks each). {}",
+            *difference, driver, gl::kDriverRemedy);
     }
     checked.insert(key);
 }

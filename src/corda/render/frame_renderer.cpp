@@ -14,7 +14,6 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
-#include "corda/core/machine.hpp"
 #include "corda/core/text.hpp"
 #include "corda/gl/object.hpp"
 #include "corda/render/paint.hpp"
@@ -66,18 +65,6 @@ void check_size(int width, int height) {
         width, height, widest, highest);
 }
 
-/// Per pixel: the image, and the masks in a format that the driver chooses.
-constexpr std::uint64_t kFrameBytes = 4 + 4;
-/// Per pixel, in addition, for tinted layers.
-constexpr std::uint64_t kTintBytes = 16;
-
-/// Checks memory first: drivers may crash without it.
-void require_memory(int width, int height, std::uint64_t bytes_per_pixel) {
-    constexpr std::uint64_t kReadBytes = 32U << 20U;  // the pixel buffers
-    require_address_space(bytes_per_pixel * static_cast<std::uint64_t>(width) * height + kReadBytes,
-                          fmt::format("a frame of {}x{} pixels", width, height));
-}
-
 /// The variant of a shader for tinted layers.
 std::string tinted(std::string source) {
     const std::size_t second_line = source.find('\n') + 1;  // #version must be the first
@@ -127,7 +114,7 @@ FrameRenderer::FrameRenderer(const FrameRenderer& other, int width, int height)
 FrameRenderer::FrameRenderer(const gl::Context& context, std::shared_ptr<Programs> programs, int width,
                              int height)
     : context_(&context),
-      image_((check_size(width, height), require_memory(width, height, kFrameBytes), Image(width, height))),
+      image_((check_size(width, height), Image(width, height))),
       exposure_(width, height),
       programs_(std::move(programs)),
       last_touched_(tile_count(width, height)) {
@@ -139,7 +126,6 @@ FrameRenderer::FrameRenderer(const gl::Context& context, std::shared_ptr<Program
 }
 
 void FrameRenderer::make_tints() {
-    require_memory(image_.width(), image_.height(), kTintBytes);
     const auto lock = context_->exclusive();
     if (!programs_->tinted_capsule) {
         programs_->tinted_capsule.emplace("tinted capsule", tinted(shaders::kCapsuleVert).c_str(),

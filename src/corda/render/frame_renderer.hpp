@@ -124,13 +124,6 @@ class FrameRenderer {
 /// list, row 0 on top.
 void mark_covered(const view::DrawList& list, std::uint8_t id, std::span<std::uint8_t> mask);
 
-/// If the environment has unusual variables (see gl::has_unusual_variables()), with some of which Mesa
-/// crashes, makes a context by `def` and draws in it in a child process, once per process, `def` and
-/// variables. Call it before a context is made. Throws corda::Error: kNoGl, with the variables to unset, if
-/// the child crashes or hangs; what gl::prepare_driver() and run_in_child() throw. It does not report drivers
-/// that give no context: gl::Context does.
-void try_driver(const gl::ContextDef& def);
-
 /// Draws a small picture with the programs of a renderer in the current context and compares it with
 /// render_reference(), to detect a driver that draws nothing or wrongly before it draws a frame.
 /// `with_tints`: checks the programs of tinted layers, which few films need. Runs once per process and
