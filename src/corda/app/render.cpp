@@ -16,7 +16,6 @@
 #include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/media/encode/resources.hpp"
 #include "corda/media/format/file_kind.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/media/write/video_file.hpp"
@@ -117,7 +116,7 @@ std::string endings_text() {
     return text;
 }
 
-/// Warns if the output format falls back from its default, loses transparency or may fill the disk.
+/// Warns if the output format falls back from its default or loses transparency.
 void report_format(const Console& console, const Scene& scene, const CheckedOutput& output) {
     const media::Format& format = output.video().format;
     if (format.is_fallback) {
@@ -127,9 +126,6 @@ void report_format(const Console& console, const Scene& scene, const CheckedOutp
     }
     if (!view::look_of(scene.style).ground.is_opaque() && std::string_view(format.ending->muxer) == "gif")
         console.warning("a GIF has no half transparent pixels: edges will be hard; .webm and .mov keep them");
-    const std::string warning =
-        media::disk_warning(format, output.path(), output.video().def, output.end() - output.first());
-    if (!warning.empty()) console.warning(warning);
 }
 
 void check_standard_output(const Console& console, const std::string& output) {

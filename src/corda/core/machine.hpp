@@ -8,11 +8,6 @@
 
 namespace corda {
 
-/// How many bytes of memory this process may still take without harm to others: what Linux tells as
-/// available, and what the limits of its control groups (version 2) and of its address space leave. Empty if
-/// none of these is known. `root` is the folder with proc/ and sys/.
-[[nodiscard]] std::optional<std::uint64_t> available_memory_bytes(const std::filesystem::path& root = "/");
-
 /// Bytes of address space that this process has; 0 if Linux does not report them.
 [[nodiscard]] std::uint64_t address_space_bytes();
 
@@ -23,15 +18,11 @@ namespace corda {
 /// memory that can be written to.
 [[nodiscard]] std::optional<std::uint64_t> data_left(const std::filesystem::path& root = "/");
 
-/// Throws corda::Error (kTemporary) if the limits on this process's address space or data leave less than
-/// `bytes`, which `what` needs, or `data_bytes` of data, if those are given. Libraries that cannot allocate
-/// memory may crash or hang, so call this before they try.
-void require_address_space(std::uint64_t bytes, const std::string& what, std::uint64_t data_bytes = 0);
+/// How many cores the calling thread may run on (taskset, a container's set of cores), at least 1.
+[[nodiscard]] int usable_cores();
 
-/// How many cores this process may keep busy, at least 1: those that the calling thread may run on (taskset,
-/// a container's set of cores), or fewer if the processor time of its control groups (version 2) is that of
-/// fewer.
-[[nodiscard]] int usable_cores(const std::filesystem::path& root = "/");
+/// The number of jobs: as asked for; for 0, one per usable core.
+[[nodiscard]] int jobs_of(int asked);
 
 /// Seconds on a clock that only goes forward.
 [[nodiscard]] inline double now_s() {

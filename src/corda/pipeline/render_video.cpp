@@ -17,7 +17,6 @@
 #include "corda/core/workers.hpp"
 #include "corda/media/encode/frame_maker.hpp"
 #include "corda/media/encode/probe.hpp"
-#include "corda/media/encode/resources.hpp"
 #include "corda/media/write/video_file.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/film_renderer.hpp"
@@ -138,8 +137,8 @@ void write_frames(Film& film, const media::CheckedVideo& video, const OnProgress
         file.add(std::move(one.frame));
         ++result.frames;
     };
-    const auto jobs = static_cast<int>(
-        std::min<std::int64_t>(media::jobs_of(video.def.encoder.jobs), std::ssize(video.to_draw)));
+    const auto jobs =
+        static_cast<int>(std::min<std::int64_t>(jobs_of(video.def.encoder.jobs), std::ssize(video.to_draw)));
     const bool can_be_threads = jobs > 1 && FilmRenderer::can_draw_in_any_order(film, video.end);
     if (can_be_threads && draw_on_threads(film, video, jobs, drawn, take)) return;
     std::optional<FrameDrawer> drawer;
@@ -213,7 +212,7 @@ CheckedOutput check_render(const Scene& scene, const std::string& path, const Re
                                                           input, !is_opaque(scene));
     check_ground(scene, video.format);
     total *= media::passes(*video.format.ending);
-    media::check_encoder_starts(video.format, video.def);
+    media::check_threads(*video.format.codec);
     video.to_draw = media::frames_to_draw(video, picture_info_of(scene));
     return CheckedOutput(std::move(video));
 }

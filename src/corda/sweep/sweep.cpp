@@ -8,10 +8,10 @@
 
 #include "corda/core/cancel.hpp"
 #include "corda/core/file.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/workers.hpp"
 #include "corda/media/bytes.hpp"
-#include "corda/media/encode/resources.hpp"
 #include "corda/sweep/shard_folder.hpp"
 
 namespace corda::sweep {
@@ -104,7 +104,7 @@ void make_shards(const SweepDef& sweep, const RunDef& def, const std::vector<std
         total += samples_of(sweep, shard).end - samples_of(sweep, shard).first;
     const auto report = [&] { report_progress(def.on_progress, result.samples_made, total); };
     SampleQueue samples(sweep, def.film, lacking, total,
-                        static_cast<int>(std::min<std::int64_t>(media::jobs_of(def.jobs), total)));
+                        static_cast<int>(std::min<std::int64_t>(jobs_of(def.jobs), total)));
     for (const std::int64_t shard : lacking) {
         PackedSample sample = samples.next(report);
         // Once there is a sample, it is known that samples can be made.

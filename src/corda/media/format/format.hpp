@@ -29,14 +29,7 @@ using PictureInfo = std::function<PngInfo(std::int64_t frame)>;
 /// Makes an encoder of libav by Codec::options.
 [[nodiscard]] std::unique_ptr<Encoder> make_libav_encoder(const Format& format, const VideoDef& def);
 
-/// Bytes of a frame on the disk per pixel.
-struct DiskBytes {
-    double min = 0.0;    ///< at most half of what two links on a black ground take at 3840x2160
-    double usual = 0.0;  ///< median of the 17 examples at 640x360, which take from 0.4 to 16 times as much
-};
-
-/// An encoder: one row of the table of codecs. Measured values of libaom-av1 and h264_nvenc are those of
-/// their like.
+/// An encoder: one row of the table of codecs.
 struct Codec {
     const char* name;        ///< libav's: "libx264"
     const char* short_name;  ///< "h264"
@@ -51,15 +44,10 @@ struct Codec {
     int default_crf_of_alpha = 0;  ///< in place of default_crf for transparent videos; 0: the same
     int min_side_px = 1;
     int max_height_px = kMaxSidePx;
-    bool is_hardware = false;  ///< it may be listed and not work
-    bool is_built_in = false;  ///< it needs neither libav nor x264
-    bool must_drain = false;   ///< closing it waits forever, unless a stream was begun and ended
-    int own_threads = 0;       ///< threads that it starts by itself, at most
-    /// Memory that a chunk takes while it is encoded, in bytes per pixel, in addition to the 130 MiB of the
-    /// process: the larger of the values measured at 1920x1080 and 3840x2160, plus a reserve.
-    int job_bytes = 240;
-    std::span<const int> preset_job_bytes{};  ///< the same for each of `presets`, if they differ
-    DiskBytes disk_bytes{};
+    bool is_hardware = false;     ///< it may be listed and not work
+    bool is_built_in = false;     ///< it needs neither libav nor x264
+    bool must_drain = false;      ///< closing it waits forever, unless a stream was begun and ended
+    int own_threads = 0;          ///< threads that it starts by itself, at most
     double tolerance = 0.0;       ///< largest error of a colour patch, in 1/255; 0: by the crf
     bool has_coarse_444 = false;  ///< it quantises the colour of 4:4:4 more coarsely
     std::unique_ptr<Encoder> (*make)(const Format& format, const VideoDef& def) = &make_libav_encoder;
