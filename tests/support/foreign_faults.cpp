@@ -1,13 +1,10 @@
-// For LD_PRELOAD: faults of other libraries and of a full host, chosen by environment variables.
+// For LD_PRELOAD: faults of a full host, chosen by environment variables.
 //   THREADS_TO_START=N      the system starts N more threads, then none
 //   FSYNC_TAKES_MS=N        flushing a file to disk takes N ms, despite signals
 //   FSYNC_BLOCKS_AFTER=NAME flushing a file to disk blocks once there is a file of this name (see glob(3), with braces)
 //   FSYNC_BLOCKS_UNTIL=FILE the file that ends this
-//   X264_HANGS_FROM_PX=N    x264 never returns from opening an encoder for pictures of N columns or more
-//   X264_HANG_MARKER=FILE   the file that is created when it begins to hang
 
 #include <dlfcn.h>
-#include <fcntl.h>
 #include <glob.h>
 #include <pthread.h>
 #include <unistd.h>
@@ -17,15 +14,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <ctime>
-
-#if __has_include(<x264.h>)
-extern "C" {
-#include <x264.h>
-}
-#endif
-
-#define CORDA_TEXT_OF(name) #name
-#define CORDA_NAME_OF(name) CORDA_TEXT_OF(name)
 
 namespace {
 
@@ -71,15 +59,4 @@ int fsync(int descriptor) {
     while (name != nullptr && end != nullptr && is_there(name) && access(end, F_OK) != 0) usleep(10'000);
     return next(&fsync, "fsync")(descriptor);
 }
-
-#ifdef X264_BUILD
-x264_t* x264_encoder_open(x264_param_t* params) {
-    if (params->i_width >= number_in("X264_HANGS_FROM_PX", 1 << 30)) {
-        const char* const marker = std::getenv("X264_HANG_MARKER");
-        if (marker != nullptr) close(open(marker, O_CREAT | O_WRONLY, 0600));
-        while (true) pause();
-    }
-    return next(&x264_encoder_open, CORDA_NAME_OF(x264_encoder_open))(params);
-}
-#endif
 }

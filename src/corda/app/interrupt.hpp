@@ -1,23 +1,14 @@
 #pragma once
 
-#include <string>
-
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
 
 namespace corda::app {
 
-/// From now on the first SIGINT, SIGTERM or, unless it is ignored, SIGHUP only asks the program to stop at a
-/// point that loses no work. If it has not ended 0.8 s later, because a driver or an encoder does not return,
-/// or if it still works after 0.8 s of processor time, or 2.4 s in all, the handler says so (with `json` on
-/// standard output too) and ends the process with the exit code of the interruption; not while a Saving
-/// exists, for half a minute. A second signal, more than a tenth of a second after the first, ends it at
-/// once. SIGPIPE and SIGXFSZ become ordinary write errors.
-void install_signal_handlers(bool json);
-
-/// To be called when all output and messages are written. If destructors or exit handlers of libraries do not
-/// return after a signal, the process then ends with this code and without a message.
-void note_end_of_work(int exit_code);
+/// From now on the first SIGINT, SIGTERM or, unless it is ignored, SIGHUP interrupts a waiting call, and
+/// otherwise only asks the program to stop at a point that loses no work. A second signal, more than a tenth
+/// of a second after the first, ends it at once. SIGPIPE and SIGXFSZ become ordinary write errors.
+void install_signal_handlers();
 
 /// Opens /dev/null for each closed standard stream: a file opened later would get its number, and with it the
 /// text for the stream.

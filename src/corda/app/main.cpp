@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
@@ -101,10 +102,10 @@ int fail(const Console& console, ExitCode code, const std::string& text) {
     return static_cast<int>(code);
 }
 
-/// Runs the action, and turns exceptions into exit codes.
-int act(const Console& console, const Action& action) {
+/// Runs the action of a command line, and turns exceptions into exit codes.
+int act(const Console& console, const Action& action, const std::string& asked) {
     try {
-        install_signal_handlers(console.json());
+        install_signal_handlers();
         const CancelScope stopping(stop_if_asked);
         return static_cast<int>(action(console));
     } catch (const ReaderLeft&) {
@@ -115,7 +116,8 @@ int act(const Console& console, const Action& action) {
         const bool is_asked = interruption() != ExitCode::kOk;
         return fail(console, is_asked && is_broken_off ? interruption() : error.code(), error.what());
     } catch (const std::bad_alloc&) {
-        return fail(console, ExitCode::kTemporary, "out of memory; a smaller scene or picture may help");
+        return fail(console, ExitCode::kTemporary,
+                    fmt::format("out of memory for {}; a smaller scene or picture may help", asked));
     } catch (const std::system_error& error) {
         if (error.code() != std::errc::resource_unavailable_try_again &&
             error.code() != std::errc::not_enough_memory)
@@ -157,7 +159,7 @@ int run(int argc, char** argv) {
     } catch (const Error& error) {
         return fail(early, error.code(), error.what());
     }
-    return act(Console(console_def), action);
+    return act(Console(console_def), action, fmt::format("'{}'", fmt::join(argv + 1, argv + argc, " ")));
 }
 
 /// Lets the memory of a picture serve the next one: zeroing fresh pages took 14 % of a render.
@@ -181,9 +183,7 @@ int main(int argc, char** argv) {
         corda::app::keep_memory();
         corda::app::keep_encoders_quiet();
         corda::app::keep_standard_streams();
-        const int exit_code = corda::app::run(argc, argv);
-        corda::app::note_end_of_work(exit_code);
-        return exit_code;
+        return corda::app::run(argc, argv);
     } catch (const std::bad_alloc&) {
         return static_cast<int>(corda::ExitCode::kTemporary);
     } catch (...) {
