@@ -218,7 +218,6 @@ TEST_F(GoldenReview, CompletesWhatAKillCutOff) {
     EXPECT_THAT(again.out,
                 HasSubstr("3 pictures: 1 passed, 0 failed, 0 missing, 0 stale, 2 written or removed"));
     EXPECT_EQ(run().exit_code, 0);
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.file("ref")), {}), 3);
 }
 #endif
 

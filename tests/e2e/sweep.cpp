@@ -66,10 +66,11 @@ class Sweep : public testing::Test {
         return quoted(CORDA_PROGRAM) + " sweep " + quoted(file("sweep.toml")) + " -q -o " +
                quoted(file(name)) + " " + more;
     }
-    /// SHA-256 and name of every file of a folder, hidden ones as well.
+    /// SHA-256 and name of every file of a folder, hidden ones as well, but for the temporary files of killed
+    /// processes.
     [[nodiscard]] std::string sums(const std::string& name) const {
-        const auto result =
-            run_shell("cd " + quoted(file(name)) + " && find . -type f | LC_ALL=C sort | xargs sha256sum");
+        const auto result = run_shell("cd " + quoted(file(name)) +
+                                      " && find . -type f ! -name '*.tmp' | LC_ALL=C sort | xargs sha256sum");
         EXPECT_EQ(result.exit_code, 0) << result.err;
         return result.out;
     }

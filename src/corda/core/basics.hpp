@@ -92,7 +92,7 @@ void check_cancelled();
 
 /// How a file is written.
 struct OutputOptions {
-    bool force = false;  ///< replace an existing file, and keep its permissions
+    bool force = false;  ///< replace an existing file
 };
 
 }  // namespace corda

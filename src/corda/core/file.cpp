@@ -5,11 +5,9 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
-#include <thread>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
@@ -60,13 +58,6 @@ std::uintmax_t file_size(const std::string& path) {
 
 std::string file_bytes(const std::string& path) {
     return first_bytes(path, file_size(path));
-}
-
-bool leads_to(const std::string& path, const Descriptor& file) {
-    struct stat open {};
-    struct stat named {};
-    return ::fstat(file.get(), &open) == 0 && ::lstat(path.c_str(), &named) == 0 &&
-           open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
 
 int Descriptor::close() noexcept {
@@ -126,11 +117,6 @@ void fail_file(std::string_view action, const std::string& path, int error_numbe
     const bool is_temporary = error_number == EMFILE || error_number == ENFILE;
     throw_error(is_temporary ? ExitCode::kTemporary : ExitCode::kIo, "cannot {} '{}': {}{}{}", action, path,
                 std::generic_category().message(error_number), hint.empty() ? "" : "; ", hint);
-}
-
-void fail_busy(const std::string& what) {
-    throw_error(ExitCode::kIo, "another render is writing {}; wait for its end, or choose another name",
-                what);
 }
 
 void make_folder(const std::string& path) {
@@ -205,43 +191,6 @@ TemporaryFolder::TemporaryFolder() {
 TemporaryFolder::~TemporaryFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
-}
-
-namespace {
-
-/// fcntl() with a lock of the open file, not of the process: threads keep each other out, too.
-int range_lock(const Descriptor& file, int command, struct ::flock& lock, std::int64_t first,
-               std::int64_t length) {
-    lock = {};
-    lock.l_type = F_WRLCK;
-    lock.l_whence = SEEK_SET;
-    lock.l_start = first;
-    lock.l_len = length;  // 0: all
-    return ::fcntl(file.get(), command, &lock);
-}
-
-}  // namespace
-
-RangeLock::RangeLock(std::string path, std::int64_t first, std::int64_t end, const std::string& what)
-    : path_(std::move(path)) {
-    constexpr int kMaxTries = 10'000;
-    struct ::flock lock {};
-    for (int tries = 0;; ++tries) {
-        file_ = Descriptor(::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666));
-        if (!file_) fail_file("write", path_, errno);
-        const bool is_locked = range_lock(file_, F_OFD_SETLK, lock, first, end - first) == 0;
-        if (is_locked ? leads_to(path_, file_) : errno != EAGAIN && errno != EACCES) return;
-        // Who holds all numbers is about to remove the file.
-        const bool is_held = !is_locked && range_lock(file_, F_OFD_GETLK, lock, first, end - first) == 0 &&
-                             lock.l_type != F_UNLCK && lock.l_len != 0;
-        if (is_held || tries == kMaxTries) fail_busy(what);
-        std::this_thread::sleep_for(std::chrono::microseconds(100));
-    }
-}
-
-RangeLock::~RangeLock() {
-    struct ::flock lock {};
-    if (range_lock(file_, F_OFD_SETLK, lock, 0, 0) == 0 && leads_to(path_, file_)) ::unlink(path_.c_str());
 }
 
 }  // namespace corda

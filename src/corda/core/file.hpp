@@ -62,9 +62,6 @@ class Descriptor {
     int number_ = -1;
 };
 
-/// Whether a name leads to this open file, not through a symbolic link.
-[[nodiscard]] bool leads_to(const std::string& path, const Descriptor& file);
-
 /// Creates and opens a file for reading and writing; nothing may stand under its name, not even a link that
 /// leads nowhere. Sets errno if it fails.
 [[nodiscard]] Descriptor create_new(const std::string& path, unsigned mode) noexcept;
@@ -77,9 +74,6 @@ class Descriptor {
 /// and the hint for `error_number`. The hint assumes that the file was to be written, unless ACTION is
 /// "read".
 [[noreturn]] void fail_file(std::string_view action, const std::string& path, int error_number);
-
-/// Throws corda::Error (kIo): another render is writing `what`.
-[[noreturn]] void fail_busy(const std::string& what);
 
 /// Purpose of using a file.
 enum class FileUse { kRead, kWrite };
@@ -116,20 +110,6 @@ class TemporaryFolder : NonCopyable {
 
   private:
     std::string path_;
-};
-
-/// Keeps other renders from a range of numbered files, by a lock file that exists meanwhile. Others may hold
-/// other ranges.
-class RangeLock : NonCopyable {
-  public:
-    /// Locks `first` to `end`, without it; `path` is the lock file's. Throws corda::Error (kIo) if another
-    /// render holds one of them, or if there can be no such file. A file system without locks locks nothing.
-    RangeLock(std::string path, std::int64_t first, std::int64_t end, const std::string& what);
-    ~RangeLock();
-
-  private:
-    std::string path_;
-    Descriptor file_;
 };
 
 }  // namespace corda

@@ -2,21 +2,11 @@
 
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
-#include <optional>
-#include <string>
 
 namespace corda {
 
 /// Bytes of address space that this process has; 0 if Linux does not report them.
 [[nodiscard]] std::uint64_t address_space_bytes();
-
-/// Bytes that the limit on the address space of this process leaves (ulimit -v); empty without one.
-[[nodiscard]] std::optional<std::uint64_t> address_space_left(const std::filesystem::path& root = "/");
-
-/// Bytes that the limit on the data of this process leaves (ulimit -d); empty without one. Data is private
-/// memory that can be written to.
-[[nodiscard]] std::optional<std::uint64_t> data_left(const std::filesystem::path& root = "/");
 
 /// How many cores the calling thread may run on (taskset, a container's set of cores), at least 1.
 [[nodiscard]] int usable_cores();

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <atomic>
-#include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -33,20 +30,11 @@ class ReaderLeft : public Error {
 void check_output(const std::string& path, const std::string& input, bool force,
                   OutputKind kind = OutputKind::kFile);
 
-/// Removes the temporary files that killed processes have left of outputs of this name. Those of living ones
-/// are locked, and stay. Never throws: they do no harm.
-void remove_leftovers(const std::string& path) noexcept;
-
-/// The same for all outputs in a folder whose names satisfy `is_output`.
-void remove_leftovers(const std::string& folder,
-                      const std::function<bool(const std::string& name)>& is_output) noexcept;
-
 /// A file that gets its name only when it is complete.
 ///
-/// The bytes go to a temporary file of unique name in the same folder, which is locked. `commit` gives it the
-/// final name; a file that already has this name, even one that appeared meanwhile, is replaced only with
-/// `force`. Then its permissions stay, and if the name is a symbolic link, the file it leads to is replaced.
-/// A device, a pipe or standard output is written to directly.
+/// The bytes go to a temporary file of unique name in the same folder. `commit` flushes it to disk and gives
+/// it the final name; a file or a symbolic link that already has this name is replaced only with `force`. A
+/// device, a pipe or standard output is written to directly. A killed process leaves "NAME.XXXXXXXX.tmp".
 class OutputFile : NonCopyable {
   public:
     struct InMemory {};
@@ -68,11 +56,11 @@ class OutputFile : NonCopyable {
     void flush();
 
     /// Changes the final name, which must be in the same folder.
-    void rename(std::string path) { path_ = target_ = std::move(path); }
+    void rename(std::string path) { path_ = std::move(path); }
 
     /// Flushes the buffer of `write` and the file to disk, closes it, and gives it its name.
-    /// If the name was taken meanwhile, without `force` by anything, with it by a device or a pipe, the
-    /// complete file is kept as by `keep`, and the message says where.
+    /// If the name was taken meanwhile, and without `force`, the complete file is kept as by `keep`, and the
+    /// message says where.
     void commit();
 
     /// Closes an unfinished file and leaves it as "PATH.part", or under its temporary name if that one is
@@ -86,50 +74,21 @@ class OutputFile : NonCopyable {
     [[nodiscard]] const std::string& temporary_path() const { return temporary_; }
 
   private:
-    /// The owner and mode of the file that is to be replaced.
-    struct Owner {
-        unsigned mode;
-        unsigned user;
-        unsigned group;
-    };
-
-    /// Learns what commit() is to replace.
-    void find_target();
     void open_directly();
     void open_temporary();
-    void restore_permissions();
     [[noreturn]] void fail_write(int error_number) const;
     void close();
-    /// A second descriptor, which holds the lock beyond the close: without it, the file would be a leftover
-    /// until it has its name.
-    [[nodiscard]] Descriptor second_lock() const;
     [[nodiscard]] int rename_to(const std::string& name) const;
 
-    std::string path_;    // as given
-    std::string target_;  // the file to replace: behind all symbolic links with `force`
+    std::string path_;
     std::string temporary_;
     std::string buffer_;
     OutputOptions options_;
-    std::optional<Owner> replaced_;
     Descriptor descriptor_;
 };
 
 /// Writes a whole OutputFile.
 void save_file(const std::string& path, std::string_view bytes,
                const OutputOptions& options = {.force = true});
-
-/// Exists while results are saved under their names. A signal lets this be completed: flushing to a slow disk
-/// may take seconds. Safe to ask for in a signal handler.
-class Saving : NonCopyable {
-  public:
-    Saving() noexcept { ++count_; }
-    ~Saving() { --count_; }
-
-    [[nodiscard]] static bool is_active() noexcept { return count_ > 0; }
-
-  private:
-    inline static std::atomic<int> count_{0};
-    static_assert(std::atomic<int>::is_always_lock_free);
-};
 
 }  // namespace corda

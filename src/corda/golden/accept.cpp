@@ -112,9 +112,7 @@ std::string nothing_text(const SuiteDef& def, std::vector<std::string> left_out)
 
 void publish(const std::string& folder, const Files& files, const std::vector<std::string>& removed) {
     if (files.empty() && removed.empty()) return;
-    const Saving saving;
     make_folder(folder);
-    remove_leftovers(folder, [&](const std::string& name) { return files.contains(name); });
     for (const auto& [name, bytes] : files) save_file(join(folder, name), bytes);
     for (const std::string& path : removed) {
         std::error_code failure;

@@ -209,7 +209,6 @@ void write_plain_file(const std::string& path, std::string_view text) {
 
 void open_folder(const SweepDef& sweep, const std::string& folder, bool force) {
     make_folder(folder);
-    remove_leftovers(folder, is_sweep_file);
     // In this order: another process makes the manifest before any other file.
     const std::vector<std::string> files = sweep_files(folder);
     auto origin = manifest_origin(folder);
