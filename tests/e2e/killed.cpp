@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "corda/media/defs.hpp"
 #include "support/command.hpp"
 #include "support/decode_rgba.hpp"
 
