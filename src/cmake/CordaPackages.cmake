@@ -46,7 +46,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libcorda-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # The dependencies of a program that links the static library.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${loaded}, libavcodec-dev, libavformat-dev, libavutil-dev, libx264-dev, libcairo2-dev, libegl-dev, \
-libeigen3-dev, libepoxy-dev, libfmt-dev, libfontconfig-dev, libfreetype-dev, libpng-dev, \
+libeigen3-dev, libepoxy-dev, libfmt-dev, libfreetype-dev, libpng-dev, \
 libtomlplusplus-dev, nlohmann-json3-dev, pkg-config, zlib1g-dev")
 # For golden tests: corda_add_golden_tests, and the matcher of corda/testing.hpp.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "corda, libgmock-dev")

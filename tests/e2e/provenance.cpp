@@ -186,8 +186,8 @@ TEST_F(ProvenanceOfFiles, DamagedProvenanceIsRefused) {
         bad.replace(bad.find(from), from.size(), to);
         EXPECT_EQ(code_of(bad), 2) << bad;
     }
-    for (const std::string& parts : std::vector<std::string>{R"("packed_scenes":"")", R"("packed_scenes":1)",
-                                                             R"("packed_scenes":"eJwBAAD//wAAAAE=")"}) {
+    for (const std::string& parts : std::vector<std::string>{R"("packed_scene":"")", R"("packed_scene":1)",
+                                                             R"("settings":1)"}) {
         write_png(folder().file("bad.png"), Image(8, 8),
                   {.text = {{"Provenance", R"({"corda":"0.1.0","name":"a",)" + parts + "}"}}},
                   {.force = true});
@@ -215,7 +215,7 @@ TEST_F(ProvenanceOfFiles, ExplainsWhyALargeSceneIsNotStored) {
     run({"still", scene_of(1500), "--frame", "0", "-o", folder().file("c.png")});  // 40 KB of text
     run({"still", "--from", folder().file("c.png"), "-o", folder().file("d.png")});
     expect_same("c.png", "d.png");
-    const std::string large = scene_of(6000);
+    const std::string large = scene_of(8000);
     run({"still", large, "--frame", "0", "-o", folder().file("a.png")});
     const auto result = run_corda({"still", "--from", folder().file("a.png"), "-o", folder().file("b.png")});
     EXPECT_EQ(result.exit_code, 2);

@@ -301,7 +301,7 @@ TEST_F(Sweep, AFolderOfAnotherSweepIsRefusedNamingTheDifference) {
     refused("vary.\"world.drag\" is [0.1] and was not given");
     define("samples = 4\nshard_samples = 2", kVaried, kQuick);
     static_cast<void>(folder_.write("scene.toml", kSceneOfSweep + "crf = 30\n"));
-    refused("scene has other values");
+    refused("scene is ");
     ASSERT_EQ(sweep("out", {"--force"}).exit_code, 0);
     EXPECT_NE(sums("out"), whole);
     static_cast<void>(folder_.write("scene.toml", kSceneOfSweep));

@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "corda/golden/record.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/render/frame_renderer.hpp"
@@ -58,8 +57,6 @@ TEST_P(GoldenStill, IsUnchanged) {
     std::vector<Setting> settings{"world.duration=1.0"};
     const Scene scene = load_scene(GetParam(), settings);
     settings.push_back(fmt::format("video.size=[{},{}]", scene.golden->width_px, scene.golden->height_px));
-    const auto made = provenance_in(read_png_info(folder + "/" + name)).golden;
-    for (const Setting& frozen : golden::freezing(scene, made)) settings.push_back(frozen);
     Film film(load_scene(GetParam(), settings));
     const Image drawn = film.still(kTimeSeconds, film.scene().video.shutter);
     EXPECT_THAT(drawn, corda::testing::MatchesGolden(name, {.folder = folder}));

@@ -38,7 +38,7 @@ check frames passes
 # A later change of the scene.
 sed -i 's/length = 1.0/length = 1.1/' "$work/project/scenes/swing.toml"
 check ref.swing fails
-grep -q "positions differ by" "$work/log" || fail "the suite does not say why"
+grep -q "hang.length is 1.1 and was 1" "$work/log" || fail "the suite does not say why"
 xmllint --noout "$work/build/ref.swing.xml" || fail "JUnit's XML"
 [[ -s $work/build/ref.swing.html ]] || fail "there is no page"
 "$work/prefix/bin/corda" golden "$work/project/scenes" --dir "$work/project/ref" --accept "$work/build/ref.swing.new" >"$work/log" ||

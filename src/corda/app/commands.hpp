@@ -118,6 +118,9 @@ struct SceneOptions {
     mutable std::optional<Provenance> provenance_;
 };
 
+/// Gives a scene another picture size, as `--size` does.
+void set_size(Scene& scene, int width_px, int height_px);
+
 /// Frames FIRST <= k < END of a video; without an end, up to its last.
 struct RequestedFrames {
     std::int64_t first = 0;

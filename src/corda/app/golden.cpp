@@ -63,7 +63,6 @@ void tell(const Console& console, const GoldenOptions& options, const golden::Su
     }
     for (const std::string& note : result.notes) console.warning(note);
     for (const std::string& detail : result.details) console.detail(detail);
-    for (const std::string& frozen : result.frozen) console.detail(frozen);
     const std::int64_t passed = result.count(Verdict::kPassed);
     const std::int64_t failed = result.count(Verdict::kDifferent) + result.count(Verdict::kEmpty);
     const std::int64_t missing = result.count(Verdict::kMissing);
@@ -81,7 +80,6 @@ void tell(const Console& console, const GoldenOptions& options, const golden::Su
                            {"stale", stale},
                            {"invalid", invalid},
                            {"changed", result.changed()},
-                           {"frozen", result.frozen},
                            {"notes", result.notes},
                            {"pictures", pictures}};
     if (invalid > 0) {
@@ -116,8 +114,7 @@ golden::SuiteResult run_until_asked(golden::SuiteDef& def) {
 void check_options(const GoldenOptions& options) {
     const golden::SuiteDef& def = options.def;
     const auto refuse = [](const char* text) { throw Error(ExitCode::kUsage, text); };
-    if ((def.replan || def.force) && !def.update)
-        refuse("--replan and --force say how --update works; add --update");
+    if (def.force && !def.update) refuse("--force says how --update works; add --update");
     if (def.dry_run && !def.update && def.accepted.empty())
         refuse("--dry-run says what --update or --accept would change; add one of them");
     for (const std::string& path : {options.junit, options.html, options.markdown})
@@ -188,8 +185,6 @@ void add_golden(CLI::App& app, Action& action) {
     command.add_flag(
         "--force", options.def.force,
         "with --update: also replace files that are no PNG, and remove pictures without a record");
-    command.add_flag("--replan", options.def.replan,
-                     "with --update: choose new solvers and cameras instead of those of the kept pictures");
     auto* const fresh = command
                             .add_option("--new", options.def.new_folder,
                                         "also write the failed pictures to this folder, for --accept")

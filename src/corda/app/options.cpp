@@ -177,11 +177,8 @@ bool SceneOptions::gives_size() const {
 }
 
 Scene SceneOptions::load_from(const Console& console, const Provenance& origin) const {
-    Scene scene = load_with(settings, of_options_,
-                            [&](const std::vector<Setting>& some) { return scene_of(origin, from_, some); });
-    const std::string change = font_change(origin, view::fallback_names(shown_texts(scene)));
-    if (!change.empty()) console.warning(fmt::format("{}: {}: pixels may differ", from_, change));
-    return scene;
+    return load_with(settings, of_options_,
+                     [&](const std::vector<Setting>& some) { return scene_of(origin, from_, some); });
 }
 
 Scene SceneOptions::load(const Console& console) const {
@@ -225,6 +222,12 @@ void SceneOptions::add_shortcut(CLI::App& command, const std::string& name, cons
             },
             help + " (--set " + key + ")")
         ->check(check);
+}
+
+void set_size(Scene& scene, int width_px, int height_px) {
+    scene.video.width_px = width_px;
+    scene.video.height_px = height_px;
+    scene.settings.push_back(fmt::format("video.size=[{}, {}]", width_px, height_px));
 }
 
 void SceneOptions::add_size(CLI::App& command) {

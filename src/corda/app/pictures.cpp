@@ -64,9 +64,10 @@ struct FigureOptions {
     /// `origin` gets its times, of which the film also has `all_s`.
     [[nodiscard]] PngInfo png_info(const Scene& one, const std::vector<RequestedTime>& some,
                                    PictureOrigin origin, const std::vector<double>& all_s) const;
-    /// Makes the only picture of a command, and reports it.
-    ExitCode write_one(const Console& console, const Scene& one, const std::vector<RequestedTime>& some,
-                       const FigureDef& def) const;
+    /// Makes the only picture of a command, and reports it. `cell`: the scene in the size of a cell of a
+    /// sheet, else `one`.
+    ExitCode write_one(const Console& console, const Scene& one, const Scene& cell,
+                       const std::vector<RequestedTime>& some, const FigureDef& def) const;
 
   private:
     mutable std::optional<Provenance> made_;  ///< of the scene that png_info() is given
@@ -122,7 +123,7 @@ void FigureOptions::take_origin(const Console& console, std::string_view command
 Scene FigureOptions::load(const Console& console) const {
     Scene one = scene.load(console);
     if (!width_mm) return one;
-    VideoDef& video = one.video;
+    const VideoDef& video = one.video;
     const double width_px = std::round(*width_mm / kMmPerInch * pixels_per_inch.value_or(kPrintPpi));
     const double height_px = std::round(width_px * video.height_px / video.width_px);
     const bool is_sane = std::max(width_px, height_px) <= kMaxSidePx;
@@ -132,8 +133,7 @@ Scene FigureOptions::load(const Console& console) const {
             "choose another width or --ppi",
             *width_mm, pixels_per_inch.value_or(kPrintPpi), width_px, height_px, kMaxSidePx, kMaxPicturePx);
     }
-    video.width_px = static_cast<int>(width_px);
-    video.height_px = static_cast<int>(height_px);
+    set_size(one, static_cast<int>(width_px), static_cast<int>(height_px));
     return one;
 }
 
@@ -197,24 +197,19 @@ PngInfo FigureOptions::png_info(const Scene& one, const std::vector<RequestedTim
     return info;
 }
 
-ExitCode FigureOptions::write_one(const Console& console, const Scene& one,
+ExitCode FigureOptions::write_one(const Console& console, const Scene& one, const Scene& cell,
                                   const std::vector<RequestedTime>& some, const FigureDef& def) const {
     if (!is_figure_path(output))
         throw_usage("-o {}: is one picture, .png, .svg or .pdf; give such a name", output);
     check_output(output, scene.input(), force);
     const bool is_sheet = def.columns > 0;
-    Scene whole = one;
-    if (is_sheet) {
-        whole.video.width_px = def.width_px;
-        whole.video.height_px = def.height_px;
-    }
     const PictureOrigin origin{.command = is_sheet ? "sheet" : "strobe", .columns = def.columns};
-    Film film = film_of(console, one, some);
+    Film film = film_of(console, cell, some);
     EmptyPictures empties = empty;
     if (!dry_run) {
         if (output.ends_with(".png")) report_gl(console, film.gl());
-        const auto empty_s = write_figure(output, film, def, png_info(whole, some, origin, film_times(some)),
-                                          {.force = force});
+        const auto empty_s =
+            write_figure(output, film, def, png_info(one, some, origin, film_times(some)), {.force = force});
         empties.count = std::ssize(empty_s);
         if (!empty_s.empty()) empties.first_s = empty_s.front();
         warn_of_branch(console, film);
@@ -224,8 +219,8 @@ ExitCode FigureOptions::write_one(const Console& console, const Scene& one,
     }
     nlohmann::json json = film_json(film);
     json["outputs"] = {{{"path", output}, {"times_s", times_of(some)}}};
-    json["width"] = whole.video.width_px;
-    json["height"] = whole.video.height_px;
+    json["width"] = one.video.width_px;
+    json["height"] = one.video.height_px;
     json["empty"] = empties.count;
     console.report(json);
     return empties.report(console, is_sheet ? std::ssize(some) : 1, one.camera);
@@ -347,7 +342,7 @@ ExitCode write_strobe(const Console& console, FigureOptions options) {
     std::vector<RequestedTime> times = options.times.list(scene);
     const auto is_same = [](const RequestedTime& a, const RequestedTime& b) { return a.time_s == b.time_s; };
     times.erase(std::unique(times.begin(), times.end(), is_same), times.end());
-    return options.write_one(console, scene, times, {.times_s = times_of(times)});
+    return options.write_one(console, scene, scene, times, {.times_s = times_of(times)});
 }
 
 struct SheetOptions : FigureOptions {
@@ -357,10 +352,11 @@ struct SheetOptions : FigureOptions {
 ExitCode write_sheet(const Console& console, SheetOptions options) {
     options.take_origin(console, "sheet");
     if (options.columns == 0) options.columns = options.columns_of_origin;
-    Scene scene = options.load(console);
+    const Scene scene = options.load(console);
     const std::vector<RequestedTime> times = options.times.list(scene);
-    const FigureDef def = contact_sheet(scene, times_of(times), options.columns);
-    return options.write_one(console, scene, times, def);
+    Scene cell = scene;
+    const FigureDef def = contact_sheet(cell, times_of(times), options.columns);
+    return options.write_one(console, scene, cell, times, def);
 }
 
 }  // namespace

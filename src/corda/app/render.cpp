@@ -203,8 +203,8 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     const double start_s = now_s();
     Scene scene = options.scene.load(console);
     if (options.pad) {
-        scene.video.width_px += scene.video.width_px % 2;
-        scene.video.height_px += scene.video.height_px % 2;
+        set_size(scene, scene.video.width_px + scene.video.width_px % 2,
+                 scene.video.height_px + scene.video.height_px % 2);
     }
     const RenderDef def = render_def(console, options);
     check_standard_output(console, options.output);

@@ -2,39 +2,48 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <string>
+#include <utility>
 
-#include "corda/core/css_colors.hpp"
 #include "corda/core/text.hpp"
 
 namespace corda {
 
 namespace {
 
-std::optional<Color> css_color(std::string_view text) {
-    const std::string name = lower(text);
-    if (name == "transparent") return Color{0, 0, 0, 0};
-    const auto* const found =
-        std::lower_bound(kCssColors.begin(), kCssColors.end(), name,
-                         [](const CssColor& color, std::string_view wanted) { return color.name < wanted; });
-    if (found == kCssColors.end() || found->name != name) return std::nullopt;
-    const auto channel = [&](unsigned shift) {
-        return static_cast<std::uint8_t>(found->rgb >> shift & 0xffU);
-    };
-    return Color{channel(16), channel(8), channel(0), 255};
-}
+/// The basic colours of CSS, and the absence of one.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 17> kNames{{{"aqua", "#00ffff"},
+                                                                                {"black", "#000000"},
+                                                                                {"blue", "#0000ff"},
+                                                                                {"fuchsia", "#ff00ff"},
+                                                                                {"gray", "#808080"},
+                                                                                {"green", "#008000"},
+                                                                                {"lime", "#00ff00"},
+                                                                                {"maroon", "#800000"},
+                                                                                {"navy", "#000080"},
+                                                                                {"olive", "#808000"},
+                                                                                {"purple", "#800080"},
+                                                                                {"red", "#ff0000"},
+                                                                                {"silver", "#c0c0c0"},
+                                                                                {"teal", "#008080"},
+                                                                                {"transparent", "#00000000"},
+                                                                                {"white", "#ffffff"},
+                                                                                {"yellow", "#ffff00"}}};
 
 }  // namespace
 
 std::optional<Color> Color::parse(std::string_view text) {
-    if (!text.starts_with('#')) return css_color(text);
-    if (text.size() != 7 && text.size() != 9) return std::nullopt;
+    const auto* const named =
+        std::ranges::find(kNames, lower(text), [](const auto& row) { return row.first; });
+    if (named != kNames.end()) text = named->second;
+    const std::size_t digits = text.size() < 6 ? 1 : 2;  // of a channel
+    if (!text.starts_with('#') || (text.size() != 3 * digits + 1 && text.size() != 4 * digits + 1))
+        return std::nullopt;
     std::array<std::uint8_t, 4> channels{0, 0, 0, 255};
-    for (std::size_t i = 0; 2 * i + 1 < text.size(); ++i) {
-        const auto value = whole_number<std::uint8_t>(text.substr(1 + 2 * i, 2), 16);
+    for (std::size_t i = 0; digits * i + 1 < text.size(); ++i) {
+        const auto value = whole_number<std::uint8_t>(text.substr(1 + digits * i, digits), 16);
         if (!value) return std::nullopt;
-        channels[i] = *value;
+        channels[i] = digits == 1 ? static_cast<std::uint8_t>(17 * *value) : *value;
     }
     return Color{channels[0], channels[1], channels[2], channels[3]};
 }

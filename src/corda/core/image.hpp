@@ -21,8 +21,8 @@ struct Color {
     std::uint8_t b = 0;
     std::uint8_t a = 255;
 
-    /// Reads "#rrggbb", "#rrggbbaa" or a name of CSS, such as "Tomato" or "transparent"; std::nullopt for any
-    /// other text.
+    /// Reads "#rgb", "#rgba", "#rrggbb", "#rrggbbaa", one of the sixteen basic names of CSS, such as "red",
+    /// or "transparent"; std::nullopt for any other text.
     static std::optional<Color> parse(std::string_view text);
 
     /// "#rrggbb", or "#rrggbbaa" if it is not opaque.

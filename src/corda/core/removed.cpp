@@ -15,6 +15,7 @@ constexpr std::array kRemoved{
     Removed{"--shard", "give each machine a part of the pictures of a sequence (--frames FIRST:END)"},
     Removed{"--panels", "use several ropes in one scene, or join videos by ffmpeg's filter xstack"},
     Removed{"--flip", "use --max, --mean or --share"},
+    Removed{"--replan", "name method and camera in the scene, as corda plan --toml prints them, to fix them"},
     Removed{"--ssim", "use --max, --mean or --share"},
     Removed{"golden.flip", "use golden.max, golden.mean or golden.share"},
     Removed{"golden.ssim", "use golden.max, golden.mean or golden.share"},

@@ -27,11 +27,11 @@ std::string hash_of(const std::string& path) {
     return is_there(path) ? hash_text(file_bytes(path)) : "";
 }
 
-/// The hash of what a picture shows, whatever the solver and the camera that references freeze.
+/// The hash of what a picture shows.
 std::string hash_of(const Case& one, const Checked& picture) {
     std::string text =
         fmt::format("{} {}x{}\n", picture.time_s, one.scene.golden->width_px, one.scene.golden->height_px);
-    for (const auto& [key, value] : pixel_digest(one.scene)) text += fmt::format("{}={}\n", key, value);
+    for (const auto& [key, value] : pixel_values(one.scene)) text += fmt::format("{}={}\n", key, value);
     return hash_text(text);
 }
 
@@ -80,12 +80,9 @@ std::string problem_of(const NewPicture& one, const std::string& bytes, const Ca
         return fmt::format("it is no picture: {}", error.what());
     }
     if (one.scene_hash != hash_of(scene, picture)) {
-        std::vector<Setting> settings = scene.settings;
-        for (const Setting& frozen :
-             freezing(scene.scene, provenance_in(read_png_info(picture.drawn_path)).golden))
-            settings.push_back(frozen);
-        return "it is of another scene; " +
-               scene_change(picture.drawn_path, load_scene(scene.path, settings), def.settings);
+        return "it is of another scene; " + scene_change(provenance_in(read_png_info(picture.drawn_path)),
+                                                         load_scene(scene.path, scene.settings),
+                                                         def.settings);
     }
     const std::string reference = hash_of(picture.reference);
     const bool is_known = reference == one.reference_hash || reference == one.hash;

@@ -62,8 +62,7 @@ Case make_case(const std::string& path, const SuiteDef& def, std::set<std::strin
               .settings = def.settings,
               .scene = load_scene(path, def.settings),
               .pictures = {},
-              .mask = {},
-              .frozen = {}};
+              .mask = {}};
     if (!made.scene.golden) return made;
     made.mask = mask_of(path, *made.scene.golden);
     made.settings.push_back(
@@ -122,10 +121,6 @@ std::string scene_in_name(const std::string& name) {
 }
 
 }  // namespace
-
-bool Case::is_whole() const {
-    return std::ranges::all_of(pictures, &Checked::selected);
-}
 
 void select(const SuiteDef& def, std::vector<Case>& cases, std::vector<std::string>& stale,
             std::vector<Checked>& invalid) {

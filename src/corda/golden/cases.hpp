@@ -19,10 +19,6 @@ struct Case {
     Scene scene;                    ///< with these settings
     std::vector<Checked> pictures;
     std::optional<Image> mask;
-    std::string frozen;  ///< what its references freeze, in words
-
-    /// True if no picture is left out by SuiteDef::only.
-    [[nodiscard]] bool is_whole() const;
 };
 
 /// The scenes of a suite. Invalid ones go to `invalid`, except those of an update. TOML files of folders that

@@ -148,10 +148,6 @@ std::string page_html(const SuiteResult& result) {
                         result.totals(), version());
     for (const Checked& picture : result.pictures)
         if (picture.failed()) html += case_html(picture);
-    if (!result.frozen.empty()) html += "<section><h2>Frozen</h2>\n";
-    for (const std::string& frozen : result.frozen)
-        html += "<p class=\"figures\">" + markup_text(frozen) + "</p>\n";
-    if (!result.frozen.empty()) html += "</section>\n";
     return html + kPageTail;
 }
 

@@ -146,7 +146,6 @@ std::string markdown(const SuiteResult& result) {
                                 cell(picture.group));
         std::string cause = picture.cause;
         if (cause.ends_with(picture.group)) cause.resize(cause.size() - picture.group.size());
-        if (cause.ends_with(", but ")) cause.resize(cause.size() - 6);
         if (cause.ends_with("; ")) cause.resize(cause.size() - 2);
         text += fmt::format("| {} | {} | {} | {} |\n", cell(picture.name), word_of(picture.verdict),
                             picture.figures(), cell(cause));

@@ -17,8 +17,6 @@
 #include "corda/golden/record.hpp"
 #include "corda/media/bytes.hpp"
 #include "corda/pipeline/film_renderer.hpp"
-#include "corda/scene/write_scene.hpp"
-#include "corda/view/font.hpp"
 
 namespace corda::golden {
 namespace {
@@ -32,8 +30,9 @@ constexpr std::size_t kMinApart = 8;
 struct Drawn {
     const Image& image;
     const GoldenRecord& made;
-    const Scene& scene;  ///< that of its film
-    const Image* mask;   ///< nullptr: none
+    const Scene& scene;                    ///< that of its film
+    const Image* mask;                     ///< nullptr: none
+    const std::vector<Setting>& settings;  ///< of the suite
 };
 
 /// Compares a picture with one of its references; false if it does not pass.
@@ -52,8 +51,7 @@ bool passes(const Drawn& drawn, const DifferenceLimits& limits, const std::strin
     picture.difference = reference.deep ? compare(reference, {.image = drawn.image}, drawn.mask)
                                         : compare(reference.image, drawn.image, drawn.mask);
     if (picture.difference.within(limits)) return true;
-    const Cause cause = cause_of(provenance_in(read_png_info(path)), drawn.made,
-                                 view::fallback_names(shown_texts(drawn.scene)));
+    const Cause cause = cause_of(provenance_in(read_png_info(path)), drawn.made, drawn.scene, drawn.settings);
     picture.cause = cause.text;
     picture.group = cause.group;
     if (!picture.difference.same_size)
@@ -87,10 +85,9 @@ void judge(const Drawn& drawn, const std::vector<std::string>& variants, Checked
 /// A scene that is being drawn.
 struct Job {
     Case* scene = nullptr;
-    std::vector<Setting> frozen;
     std::optional<Film> film;
-    std::vector<GoldenRecord> made;  ///< per picture
-    std::size_t left = 0;            ///< pictures to draw
+    GoldenRecord made;
+    std::size_t left = 0;  ///< pictures to draw
 };
 
 class Runner {
@@ -114,15 +111,11 @@ class Runner {
         auto job = std::make_shared<Job>();
         job->scene = &one;
         job->left = one.pictures.size();
-        job->frozen = def_.replan ? std::vector<Setting>{} : frozen_settings(one);
-        make_film(*job);
-        // A camera that was fitted to another motion may miss this one. All pictures of a scene share it.
-        if (def_.update && one.is_whole() && !job->frozen.empty() && leaves_frame(*job)) {
-            job->frozen.clear();
-            make_film(*job, {});
-        }
-        if (def_.update || !def_.new_folder.empty()) freeze(*job);
-        if (def_.update) note_frozen(one, freezing(one.scene, job->made.front()), "its pictures freeze");
+        FilmDef def = def_.film;
+        def.stills_s = one.scene.golden->at_s;
+        job->film.emplace(load_scene(one.path, one.settings), def);
+        FilmRenderer::keep(*job->film, def.stills_s);
+        job->made = record_of(*job->film);
         const std::size_t count = one.pictures.size();
         const bool may_split = job->film->scene().video.shutter == 0.0;
         const std::size_t pieces =
@@ -134,60 +127,6 @@ class Runner {
             });
     }
 
-    /// The film with the frozen solver and camera, or without if they no longer fit the scene.
-    void make_film(Job& job) {
-        try {
-            make_film(job, job.frozen);
-        } catch (const Error& error) {
-            const bool may_not_fit = error.code() == ExitCode::kInvalidScene ||
-                                     error.code() == ExitCode::kDiverged || error.code() == ExitCode::kUsage;
-            if (job.frozen.empty() || !may_not_fit) throw;
-            job.scene->frozen =
-                fmt::format("{}: what its references freeze does not fit the scene any more: {}",
-                            job.scene->scene.name, error.what());
-            job.frozen.clear();
-            make_film(job, {});
-        }
-    }
-
-    /// Whether a particle is outside of one of the pictures, and the scene itself does not say where to look.
-    static bool leaves_frame(Job& job) {
-        const CameraDef& own = job.scene->scene.camera;
-        if (own.center_m || own.height_m) return false;
-        const CameraDef& camera = job.film->camera();
-        const VideoDef& video = job.film->scene().video;
-        const double y_m = *camera.height_m / 2;
-        const double x_m = y_m * video.width_px / video.height_px;
-        const Vec2 center = *camera.center_m - job.film->system().origin_m;  // positions are relative to it
-        return std::ranges::any_of(job.made, [&](const GoldenRecord& made) {
-            for (std::size_t i = 0; i + 1 < made.positions_m.size(); i += 2)
-                if (std::abs(made.positions_m[i] - center.x) > x_m ||
-                    std::abs(made.positions_m[i + 1] - center.y) > y_m)
-                    return true;
-            return false;
-        });
-    }
-
-    /// Draws with the chosen method and camera as if they were frozen already, as checks do: a picture may
-    /// name its method.
-    void freeze(Job& job) {
-        if (!job.frozen.empty()) return;
-        job.frozen = freezing(job.scene->scene, job.made.front());
-        if (!job.frozen.empty()) make_film(job, job.frozen);
-    }
-
-    void make_film(Job& job, const std::vector<Setting>& frozen) {
-        const Case& one = *job.scene;
-        std::vector<Setting> settings = one.settings;
-        settings.insert(settings.end(), frozen.begin(), frozen.end());
-        FilmDef def = def_.film;
-        def.stills_s = one.scene.golden->at_s;
-        job.film.emplace(load_scene(one.path, settings), def);
-        FilmRenderer::keep(*job.film, def.stills_s);
-        job.made.clear();
-        for (const double time_s : def.stills_s) job.made.push_back(record_of(*job.film, time_s));
-    }
-
     void draw(Job& job, std::size_t first, std::size_t end) {
         std::optional<FilmRenderer> renderer(std::in_place, *job.film);
         for (std::size_t i = first; i < end; ++i) {
@@ -196,13 +135,15 @@ class Runner {
             const auto start = std::chrono::steady_clock::now();
             renderer->draw(picture.time_s);
             const Image& drawn = renderer->image();
-            judge({drawn, job.made[i], job.film->scene(), job.scene->mask ? &*job.scene->mask : nullptr},
+            judge({drawn, job.made, job.film->scene(), job.scene->mask ? &*job.scene->mask : nullptr,
+                   def_.settings},
                   variants_of(references_, picture.name), picture);
             if (renderer->shows_nothing() || has_one_color(drawn)) {
                 picture.verdict = Verdict::kEmpty;
-                picture.cause = picture.group = "nothing is in view";
+                picture.cause = "nothing is in view" + (picture.cause.empty() ? "" : "; " + picture.cause);
+                if (picture.group.empty()) picture.group = "nothing is in view";
             } else if (def_.update || !def_.new_folder.empty()) {
-                add_file(job, i, drawn, picture);
+                add_file(job, drawn, picture);
             }
             if (picture.failed()) keep(drawn, picture);
             picture.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -214,89 +155,24 @@ class Runner {
             job.left -= end - first;
             if (job.left > 0) return;
         }
-        note_since_when(job);
-        note_changes(job);
         job.film.reset();
     }
 
-    /// Adds to the causes what the scene says that the kept pictures' did not.
-    void note_changes(Job& job) const {
-        const bool is_cut = !job.frozen.empty() && leaves_frame(job);
-        for (Checked& picture : job.scene->pictures) {
-            const auto add = [&cause = picture.cause](const std::string& text) {
-                cause += (cause.empty() ? "" : "; ") + text;
-            };
-            const bool differs = picture.verdict == Verdict::kDifferent || picture.verdict == Verdict::kEmpty;
-            const std::string change =
-                differs ? scene_change(picture.reference, job.film->scene(), def_.settings) : "";
-            if (!change.empty()) {
-                if (picture.group == kPixelsDiffer)
-                    picture.cause = "same positions and camera, but " + change;
-                else
-                    add(change);
-                picture.group = change;
-            }
-            if (is_cut && picture.failed()) add("it leaves the frozen frame, and --update fits another");
-        }
-    }
-
-    /// Settings that the references of a scene freeze, from the first reference that records them.
-    std::vector<Setting> frozen_settings(Case& one) const {
-        for (const Checked& picture : one.pictures) {
-            for (const std::string& path : variants_of(references_, picture.name)) {
-                try {
-                    auto frozen = freezing(one.scene, provenance_in(read_png_info(path)).golden);
-                    if (frozen.empty()) continue;
-                    note_frozen(one, frozen, "frozen by " + picture.name);
-                    return frozen;
-                } catch (const Error& error) {
-                    if (error.code() != ExitCode::kIo) throw;  // otherwise the comparison tells
-                }
-            }
-        }
-        return {};
-    }
-
-    static void note_frozen(Case& one, const std::vector<Setting>& frozen, const std::string& how) {
-        if (frozen.empty()) return;
-        one.frozen = fmt::format("{}: {}:", one.scene.name, how);
-        for (const Setting& setting : frozen) one.frozen += " " + setting;
-    }
-
-    /// Encodes a picture that is missing or differs, in an update also one that freezes something else.
-    void add_file(Job& job, std::size_t i, const Image& drawn, Checked& picture) {
-        const GoldenRecord& made = job.made[i];
+    /// Encodes a picture that is missing or differs, in an update also one without a record.
+    void add_file(const Job& job, const Image& drawn, Checked& picture) {
         const std::string path = (fs::path(def_.folder) / picture.name).string();
         if (picture.verdict == Verdict::kPassed) {
             if (!def_.update || fs::path(picture.reference).filename() != picture.name) return;
-            const std::optional<GoldenRecord> kept = provenance_in(read_png_info(path)).golden;
-            if (kept && kept->is_frozen_as(made)) return;
-            picture.cause = kept ? "the same pixels, by another solver or camera"
-                                 : "the same pixels, without a record of how they were made";
+            if (provenance_in(read_png_info(path)).golden) return;
+            picture.cause = "the same pixels, without a record of how they were made";
         }
         if (!def_.force && is_no_png(path)) return;
         picture.changed = def_.update;
         if (def_.dry_run) return;
         if (!def_.update) picture.drawn_path = (fs::path(def_.new_folder) / picture.name).string();
-        std::string bytes = media::png_bytes(drawn, to_png_info(made, *job.film, picture.time_s));
+        std::string bytes = media::png_bytes(drawn, to_png_info(job.made, *job.film, picture.time_s));
         const std::lock_guard lock(mutex_);
         files_[picture.name] = std::move(bytes);
-    }
-
-    /// Adds to the causes from when on positions differ, be it not enough to fail a picture.
-    void note_since_when(const Job& job) const {
-        std::vector<Checked>& pictures = job.scene->pictures;
-        const auto moved = [](const Checked& picture) { return picture.cause.starts_with("positions"); };
-        if (std::ranges::none_of(pictures, moved)) return;
-        std::size_t first = 0;
-        const auto is_the_same = [&](std::size_t i) {
-            if (!pictures[i].selected || pictures[i].verdict != Verdict::kPassed) return !moved(pictures[i]);
-            const auto reference = provenance_in(read_png_info(pictures[i].reference)).golden;
-            return !reference || reference->state == job.made[i].state;
-        };
-        while (is_the_same(first)) ++first;
-        for (Checked& picture : pictures)
-            if (moved(picture)) picture.cause += fmt::format(", from t = {} s on", pictures[first].time_s);
     }
 
     void keep(const Image& drawn, Checked& picture) {
@@ -320,7 +196,7 @@ class Runner {
     TaskQueue queue_;
 };
 
-/// Notes the kept pictures that freeze nothing because their texts are gone.
+/// Notes the kept pictures whose texts are gone.
 void note_lost_records(const SuiteDef& def, const std::vector<Case>& cases, SuiteResult& result) {
     std::vector<std::string> names;
     for (const Case& one : cases)
@@ -333,12 +209,12 @@ void note_lost_records(const SuiteDef& def, const std::vector<Case>& cases, Suit
     std::string list = names.front();
     for (std::size_t i = 1; i < shown; ++i) list += ", " + names[i];
     if (names.size() > shown) list += ", ...";
-    result.notes.push_back(
-        fmt::format("{} of how it was made, so that solver and camera are not frozen: {}; run corda golden "
-                    "--update, and keep the texts of PNG files (a tool such as oxipng --strip removes them)",
-                    names.size() == 1 ? "1 picture has no record"
-                                      : fmt::format("{} pictures have no record", names.size()),
-                    list));
+    result.notes.push_back(fmt::format(
+        "{} of how it was made, so that a failure cannot say why: {}; run corda golden --update, and keep "
+        "the texts of PNG files (a tool such as oxipng --strip removes them)",
+        names.size() == 1 ? "1 picture has no record"
+                          : fmt::format("{} pictures have no record", names.size()),
+        list));
 }
 
 /// Throws corda::Error (kIo) if there is a folder, a pipe or a device where a picture is to be.
@@ -370,8 +246,6 @@ SuiteResult run(const SuiteDef& def) {
     std::int64_t all = 0;
     for (const Case& one : cases) {
         all += std::ranges::count_if(one.pictures, &Checked::selected);
-        if (def.replan && !one.is_whole())
-            throw_usage("--replan changes all pictures of '{}'; give --only {}", one.path, one.scene.name);
     }
     Runner runner(def, references, all);
     runner.check(cases);
@@ -381,7 +255,6 @@ SuiteResult run(const SuiteDef& def) {
         std::copy_if(std::make_move_iterator(one.pictures.begin()),
                      std::make_move_iterator(one.pictures.end()), std::back_inserter(result.pictures),
                      [](const Checked& picture) { return picture.selected; });
-        if (!one.frozen.empty()) result.frozen.push_back(one.frozen);
     }
     std::vector<std::string> removed;
     for (const std::string& path : stale) {

@@ -24,9 +24,8 @@ struct SuiteDef {
     bool update = false;      ///< replace references that differ, add missing ones, remove stale ones
     bool force =
         false;  ///< with `update`: also replace files that are no PNG, and remove stale ones without a record
-    bool replan = false;   ///< with `update`: choose solver and camera of all scenes again
     bool dry_run = false;  ///< with `update` and in accept(): change nothing
-    /// Where failed pictures are written for accept(), as an update would, by the frozen solver and camera.
+    /// Where failed pictures are written for accept(), as an update would.
     /// Empty: nowhere. One with earlier pictures is emptied of them.
     std::string new_folder;
     std::vector<std::string> accepted;  ///< folders of earlier runs, see accept()
@@ -66,7 +65,6 @@ struct Checked {
 
 struct SuiteResult {
     std::vector<Checked> pictures = {};  ///< scene by scene in order of time; stale ones, invalid scenes last
-    std::vector<std::string> frozen = {};   ///< per scene whose solver or camera its references fix: in words
     std::vector<std::string> details = {};  ///< files that were passed over, in words
     std::vector<std::string> notes = {};    ///< what the user must know besides: sentences
     bool may_change = false;                ///< of an update or accept()

@@ -1,11 +1,10 @@
 #include "corda/pipeline/provenance.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <zlib.h>
 #include <nlohmann/json.hpp>
 
@@ -17,7 +16,6 @@
 #include "corda/media/read/video_comment.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/scene/write_scene.hpp"
-#include "corda/view/font.hpp"
 
 namespace corda {
 namespace {
@@ -28,22 +26,14 @@ using Json = nlohmann::json;
 constexpr std::size_t kMaxParticles = 100'000;
 constexpr std::size_t kMaxTimes = 1000;
 constexpr std::size_t kMaxName = 255;
-constexpr const char* kPacked = "packed_scenes";
-/// Of the texts of all scenes of a file.
+constexpr const char* kPacked = "packed_scene";
 constexpr std::size_t kMaxUnpacked = std::size_t{1} << 20;
 
-constexpr std::string_view kVideoRemedy =
-    "give a video that corda render has written (.mp4, .mov, .mkv, .webm)";
+constexpr const char* kRemedy =
+    "give a PNG, or a video that is no animation, which a command of corda has written";
 
-std::string_view remedy(OriginUse use) {
-    return use == OriginUse::kJoin
-               ? kVideoRemedy
-               : "give a PNG, or a video that is no animation, which a command of corda has written";
-}
-
-[[noreturn]] void fail_at(const std::string& path, const std::string& problem,
-                          OriginUse use = OriginUse::kFrom) {
-    throw_usage("'{}' {}; {}", path, problem, remedy(use));
+[[noreturn]] void fail_at(const std::string& path, const std::string& problem) {
+    throw_usage("'{}' {}; {}", path, problem, kRemedy);
 }
 
 Json json_of(const PictureOrigin& picture) {
@@ -58,51 +48,11 @@ Json json_of(const PictureOrigin& picture) {
     return json;
 }
 
-constexpr std::size_t kDigits = 16;  // of a double's bits
-
-std::string hex_of(const std::vector<double>& values) {
-    std::string text;
-    text.reserve(values.size() * kDigits);
-    for (const double value : values)
-        fmt::format_to(std::back_inserter(text), "{:016x}", std::bit_cast<std::uint64_t>(value));
-    return text;
-}
-
-std::vector<double> from_hex(std::string_view text) {
-    std::vector<double> values;
-    for (; !text.empty(); text.remove_prefix(kDigits)) {
-        const auto bits = whole_number<std::uint64_t>(text.substr(0, kDigits), 16);
-        values.push_back(std::bit_cast<double>(bits.value_or(0)));
-        if (text.size() < kDigits || !bits || !std::isfinite(values.back()))
-            throw Error(ExitCode::kUsage, "its positions are not what corda writes");
-    }
-    return values;
-}
-
-Json json_of(const GoldenRecord& golden) {
-    Json json{{"renderer", golden.renderer},
-              {"solver", golden.solver},
-              {"center", {golden.center_m.x, golden.center_m.y}},
-              {"height", golden.height_m},
-              {"margin", golden.margin},
-              {"state", golden.state},
-              {"positions", hex_of(golden.positions_m)}};
-    if (!golden.color_scale.empty()) json["color_scale"] = golden.color_scale;
-    return json;
-}
-
 /// Throws what the JSON library throws for other types.
 GoldenRecord golden_of(const Json& json) {
-    const Json& center = json.at("center");
-    GoldenRecord golden{.renderer = json.at("renderer").get<std::string>(),
-                        .solver = json.at("solver").get<std::string>(),
-                        .center_m = {center.at(0).get<double>(), center.at(1).get<double>()},
-                        .height_m = json.at("height").get<double>(),
-                        .margin = json.at("margin").get<double>(),
-                        .color_scale = printable(json.value("color_scale", "")),
-                        .state = json.at("state").get<std::string>(),
-                        .positions_m = from_hex(json.at("positions").get<std::string>())};
-    if (!golden.solver.starts_with("solver=")) throw Error(ExitCode::kUsage, "its solver is no setting");
+    GoldenRecord golden{.renderer = json.at("renderer").get<std::string>()};
+    for (const auto& [key, value] : json.value("chosen", Json::object()).items())
+        golden.chosen.emplace(printable(key), printable(value.get<std::string>()));
     return golden;
 }
 
@@ -144,68 +94,50 @@ Provenance parsed(const Json& json) {
     provenance.scene = json.value("scene", "");
     provenance.left_out = json.value("left_out", "");
     provenance.frames = json.value("frames", "");
-    for (const Json& font : json.value("fonts", Json::array()))
-        provenance.fonts.push_back(printable(font.get<std::string>()));
+    provenance.settings = json.value("settings", provenance.settings);
     if (json.contains("picture")) provenance.picture = picture_of(json["picture"]);
     if (json.contains("golden")) provenance.golden = golden_of(json["golden"]);
-    for (const Json& part : json.value("parts", Json::array())) {
-        provenance.parts.push_back(parsed(part));
-        std::string& left_out = provenance.parts.back().left_out;
-        if (left_out.empty()) left_out = provenance.left_out;
-    }
     if (!is_sound_name(provenance.name)) throw Error(ExitCode::kUsage, "its name is none of a scene");
     return provenance;
 }
 
-/// Calls `visit` with the scene of a file and those of its parts.
-template <class Made, class Visit>
-void for_each_scene(Made& provenance, const Visit& visit) {
-    visit(provenance.scene);
-    for (auto& part : provenance.parts) for_each_scene(part, visit);
-}
-
-/// All scenes in base64 of a zlib stream, each with a NUL at its end.
-std::string packed(const std::string& scenes) {
-    uLongf size = compressBound(scenes.size());
+/// Base64 of a zlib stream.
+std::string packed(const std::string& text) {
+    uLongf size = compressBound(text.size());
     std::string bytes(size, '\0');
-    if (compress2(reinterpret_cast<Bytef*>(bytes.data()), &size,
-                  reinterpret_cast<const Bytef*>(scenes.data()), scenes.size(), Z_BEST_COMPRESSION) != Z_OK)
+    if (compress2(reinterpret_cast<Bytef*>(bytes.data()), &size, reinterpret_cast<const Bytef*>(text.data()),
+                  text.size(), Z_BEST_COMPRESSION) != Z_OK)
         throw std::bad_alloc();
     return base64({bytes.data(), size});
 }
 
-void unpack(const std::string& text, Provenance& provenance) {
+std::string unpacked(const std::string& text) {
     const std::string bytes = from_base64(text);
-    std::string scenes(kMaxUnpacked, '\0');
-    uLongf size = scenes.size();
-    const bool is_sound = uncompress(reinterpret_cast<Bytef*>(scenes.data()), &size,
-                                     reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()) == Z_OK;
-    std::string_view rest(scenes.data(), is_sound ? size : 0);
-    for_each_scene(provenance, [&rest](std::string& scene) {
-        const std::size_t end = rest.find('\0');
-        if (end == std::string_view::npos)
-            throw Error(ExitCode::kUsage, "its packed scenes are not what corda writes");
-        scene = rest.substr(0, end);
-        rest.remove_prefix(end + 1);
-    });
+    std::string scene(kMaxUnpacked, '\0');
+    uLongf size = scene.size();
+    if (uncompress(reinterpret_cast<Bytef*>(scene.data()), &size,
+                   reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()) != Z_OK)
+        throw Error(ExitCode::kUsage, "its packed scene is not what corda writes");
+    scene.resize(size);
+    return scene;
 }
 
 Provenance parsed(const std::string& text) {
     const Json json = media::parse_untrusted_json(text);
     Provenance provenance = parsed(json);
-    if (json.contains(kPacked)) unpack(json[kPacked].get<std::string>(), provenance);
+    if (json.contains(kPacked)) provenance.scene = unpacked(json[kPacked].get<std::string>());
     return provenance;
 }
 
 Json json_of(const Provenance& provenance) {
     Json json{{"corda", provenance.corda}, {"name", provenance.name}};
     if (!provenance.scene.empty()) json["scene"] = provenance.scene;
+    if (!provenance.settings.empty()) json["settings"] = provenance.settings;
     if (!provenance.left_out.empty()) json["left_out"] = provenance.left_out;
     if (!provenance.frames.empty()) json["frames"] = provenance.frames;
-    if (!provenance.fonts.empty()) json["fonts"] = provenance.fonts;
     if (provenance.picture) json["picture"] = json_of(*provenance.picture);
-    if (provenance.golden) json["golden"] = json_of(*provenance.golden);
-    for (const Provenance& part : provenance.parts) json["parts"].push_back(json_of(part));
+    if (provenance.golden)
+        json["golden"] = {{"renderer", provenance.golden->renderer}, {"chosen", provenance.golden->chosen}};
     return json;
 }
 
@@ -216,27 +148,6 @@ std::string shortened(std::string text, std::size_t bytes) {
     std::size_t end = bytes - kMore.size();
     while (end > 0 && is_continuation(text[end])) --end;
     return text.substr(0, end).append(kMore);
-}
-
-/// The names of parts as a sound name.
-std::string names_of(const std::vector<Provenance>& parts) {
-    std::string names;
-    for (const Provenance& part : parts) {
-        names += (names.empty() ? "" : ", ") + part.name;
-        if (names.size() > kMaxName) break;
-    }
-    return shortened(std::move(names), kMaxName);
-}
-
-/// Refuses a file without a scene, and one with several.
-void check_scene(const Provenance& provenance, const std::string& path) {
-    if (!provenance.parts.empty())
-        throw_usage("'{}' has several scenes ({}); give one of the videos that it was joined of", path,
-                    printable(names_of(provenance.parts)));
-    if (!provenance.scene.empty()) return;
-    fail_at(path,
-            fmt::format("does not carry its scene, because {}",
-                        provenance.left_out.empty() ? "it is damaged" : printable(provenance.left_out)));
 }
 
 /// Provenance in the texts of a PNG.
@@ -261,11 +172,17 @@ std::optional<PictureOrigin> frame_of_sequence(const std::string& number) {
     return PictureOrigin{.command = "frame", .times = {{frame, 0.0}}};
 }
 
-std::string text_in_video(const std::string& path, OriginUse use) {
-    const std::string text = media::video_comment(path, remedy(use));
+std::string text_in_video(const std::string& path) {
+    const std::string text = media::video_comment(path, kRemedy);
     Json comment = Json::parse(text, nullptr, false);  // its size and depth were checked
     if (!comment.is_object() || !comment.contains(kProvenanceKey)) return {};
     return comment[kProvenanceKey].dump();
+}
+
+/// Whether the text of a scene gives all its values: code may have changed them since it was read.
+bool is_as_written(const Scene& scene) {
+    return !scene.text.empty() &&
+           values_of(parse_scene(scene.text, scene.source, scene.settings)) == values_of(scene);
 }
 
 }  // namespace
@@ -274,7 +191,6 @@ Provenance provenance_of(const Scene& scene) {
     Provenance provenance;
     provenance.corda = version();
     provenance.name = shortened(printable(scene.name), kMaxName);
-    provenance.fonts = view::fallback_names(shown_texts(scene));
     std::size_t particles = 0;
     for (const RopeDef& rope : scene.ropes) particles += rope.points_m.size();
     for (const NetDef& net : scene.nets) particles += net.points_m.size();
@@ -284,22 +200,17 @@ Provenance provenance_of(const Scene& scene) {
         return provenance;
     }
     try {
-        provenance.scene = write_scene(scene);
+        if (is_as_written(scene)) {
+            provenance.scene = scene.text;
+            std::ranges::copy_if(scene.settings, std::back_inserter(provenance.settings),
+                                 [](const Setting& setting) { return !setting.starts_with("video.jobs"); });
+        } else {
+            provenance.scene = write_scene(scene);
+        }
     } catch (const Error& error) {
         provenance.left_out = utf8(error.what());
     }
     return provenance;
-}
-
-Provenance joined(const std::vector<Provenance>& videos) {
-    std::vector<Provenance> parts;
-    for (const Provenance& video : videos) {
-        if (video.parts.empty())
-            parts.push_back(video);
-        else
-            parts.insert(parts.end(), video.parts.begin(), video.parts.end());
-    }
-    return {.corda = std::string(version()), .name = names_of(parts), .parts = parts};
 }
 
 std::string provenance_text(Provenance provenance) {
@@ -314,50 +225,27 @@ std::string provenance_text(Provenance provenance) {
     provenance.left_out = shortened(provenance.left_out, kMaxReason);
     std::string text = text_of(json_of(provenance));
     if (fits(text)) return text;
-    std::string scenes;
-    for_each_scene(provenance, [&scenes](std::string& scene) {
-        (scenes += scene) += '\0';
-        scene.clear();
-    });
-    Json json = json_of(provenance);
-    const std::size_t others = std::min(text_of(json).size(), Provenance::kMaxBytes);
-    const char* const subject = provenance.parts.empty() ? "the scene takes" : "the scenes take";
-    if (scenes.size() > kMaxUnpacked) {
-        provenance.left_out = fmt::format("{} {} bytes, more than {}", subject, scenes.size(), kMaxUnpacked);
+    const std::string scene = std::exchange(provenance.scene, {});
+    if (scene.size() > kMaxUnpacked) {
+        provenance.left_out =
+            fmt::format("the scene takes {} bytes, more than {}", scene.size(), kMaxUnpacked);
     } else {
-        json[kPacked] = packed(scenes);
+        Json json = json_of(provenance);
+        json[kPacked] = packed(scene);
         text = text_of(json);
         if (fits(text)) return text;
-        provenance.left_out = fmt::format("{} {} compressed bytes, more than {}", subject,
-                                          text.size() - others, Provenance::kMaxBytes - others);
+        provenance.left_out = fmt::format("the scene takes {} compressed bytes, and all may take {}",
+                                          text.size(), Provenance::kMaxBytes);
     }
+    provenance.settings.clear();
     text = text_of(json_of(provenance));
     if (fits(text)) return text;
     provenance.picture.reset();
-    if (!provenance.parts.empty()) {
-        provenance.left_out = fmt::format("the names of {} scenes take {} bytes, more than {}",
-                                          provenance.parts.size(), text.size(), Provenance::kMaxBytes);
-        provenance.parts.clear();
-    }
     return text_of(json_of(provenance));
 }
 
-std::string font_change(const Provenance& provenance, const std::vector<std::string>& now) {
-    if (provenance.fonts == now) return {};
-    const auto words = [](const std::vector<std::string>& names) {
-        return names.empty() ? std::string("none") : fmt::format("{}", fmt::join(names, ", "));
-    };
-    return fmt::format("other fonts besides DejaVu Sans: {}, now {}", words(provenance.fonts), words(now));
-}
-
 std::string left_out_of(const std::string& text) {
-    std::vector<Provenance> all{parsed(text)};
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        if (!all[i].left_out.empty()) return all[i].left_out;
-        const std::vector<Provenance> parts = std::move(all[i].parts);
-        all.insert(all.end(), parts.begin(), parts.end());
-    }
-    return "";
+    return parsed(text).left_out;
 }
 
 Provenance provenance_in(const PngInfo& info) {
@@ -370,33 +258,36 @@ Provenance provenance_in(const PngInfo& info) {
     }
 }
 
-Provenance read_provenance(const std::string& path, OriginUse use) {
-    if (path.ends_with(".toml"))
-        throw_usage("'{}' is a scene file; {}", path,
-                    use == OriginUse::kJoin ? kVideoRemedy : "give it without --from");
+Provenance read_provenance(const std::string& path) {
+    if (path.ends_with(".toml")) throw_usage("'{}' is a scene file; give it without --from", path);
     const std::string kind = media::file_kind(path);
-    if (kind == "gif") fail_at(path, "is a GIF, which carries no provenance", use);
+    if (kind == "gif") fail_at(path, "is a GIF, which carries no provenance");
     PngTexts png;
     if (media::is_png(path))
         png = texts_in(read_png_info(path));
     else
-        png.provenance = text_in_video(path, use);
+        png.provenance = text_in_video(path);
     const std::string& text = png.provenance;
-    if (text.empty()) fail_at(path, "has no provenance", use);
-    if (text.size() > 2 * Provenance::kMaxBytes) fail_at(path, "has more provenance than corda writes", use);
+    if (text.empty()) fail_at(path, "has no provenance");
+    if (text.size() > 2 * Provenance::kMaxBytes) fail_at(path, "has more provenance than corda writes");
     Provenance provenance;
     try {
         provenance = parsed(text);
     } catch (const std::exception& error) {
-        fail_at(path, fmt::format("has damaged provenance ({})", printable(error.what())), use);
+        fail_at(path, fmt::format("has damaged provenance ({})", printable(error.what())));
     }
     if (!provenance.picture) provenance.picture = frame_of_sequence(png.frame);
     return provenance;
 }
 
 Scene scene_of(const Provenance& provenance, const std::string& path, const std::vector<Setting>& settings) {
-    check_scene(provenance, path);
-    Scene scene = parse_scene(provenance.scene, path, settings);
+    if (provenance.scene.empty())
+        fail_at(path,
+                fmt::format("does not carry its scene, because {}",
+                            provenance.left_out.empty() ? "it is damaged" : printable(provenance.left_out)));
+    std::vector<Setting> all = provenance.settings;
+    all.insert(all.end(), settings.begin(), settings.end());
+    Scene scene = parse_scene(provenance.scene, path, all);
     scene.name = provenance.name;
     return scene;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,24 +32,11 @@ struct PictureOrigin {
     friend bool operator==(const PictureOrigin&, const PictureOrigin&) = default;
 };
 
-/// How a golden picture was made of its scene.
+/// How a golden picture was made, besides its scene.
 struct GoldenRecord {
-    static constexpr std::size_t kMaxParticles = 256;
-
-    std::string renderer = {};     ///< GL_RENDERER
-    std::string solver = {};       ///< setting "solver={...}"
-    Vec2 center_m = {};            ///< of the camera
-    double height_m = 0.0;         ///< of the camera
-    double margin = 0.0;           ///< camera.margin, to which both were fitted
-    std::string color_scale = {};  ///< see Film::color_scale(); empty also in pictures that do not say it
-    std::string state = {};        ///< FNV-1a of the positions' bits, in hexadecimal
-    /// x and y of each particle in turn; of more than kMaxParticles, of every second, third, ... alone.
-    std::vector<double> positions_m = {};
-
-    /// True if both have the same solver and camera.
-    [[nodiscard]] bool is_frozen_as(const GoldenRecord& other) const {
-        return solver == other.solver && center_m == other.center_m && height_m == other.height_m;
-    }
+    std::string renderer = {};  ///< GL_RENDERER
+    /// Keys of solver and camera that the scene leaves open, with the values that were chosen.
+    std::map<std::string, std::string> chosen = {};
 };
 
 /// Origin of a file.
@@ -56,53 +44,42 @@ struct Provenance {
     /// Of the text that a file carries. QuickTime's comments end at 64 KiB.
     static constexpr std::size_t kMaxBytes = std::size_t{32} << 10;
 
-    std::string corda = {};     ///< the version that made it
-    std::string name = {};      ///< Scene::name, printable
-    std::string scene = {};     ///< a scene file (write_scene)
-    std::string left_out = {};  ///< why there is no scene; empty if there is one
-    /// Names and versions of the fonts of its title, texts and labels, besides DejaVu Sans.
-    std::vector<std::string> fonts = {};
-    std::string frames = {};  ///< of a video or a sequence of pictures: "FIRST:END"
+    std::string corda = {};              ///< the version that made it
+    std::string name = {};               ///< Scene::name, printable
+    std::string scene = {};              ///< the text of the scene
+    std::vector<Setting> settings = {};  ///< in place of what the text says
+    std::string left_out = {};           ///< why there is no scene; empty if there is one
+    std::string frames = {};             ///< of a video or a sequence of pictures: "FIRST:END"
     std::optional<PictureOrigin> picture = {};
     std::optional<GoldenRecord> golden = {};  ///< of a picture that `corda golden` keeps
-    std::vector<Provenance> parts = {};       ///< of a video that was joined
 };
 
 /// The keyword of the text in a PNG, and the key in the comment of a video.
 inline constexpr const char* kProvenanceKeyword = "Provenance";
 inline constexpr const char* kProvenanceKey = "provenance";
 
-/// The provenance of a file that this version makes from `scene`: without the scene if that takes too much
-/// space or code alone can say it. No folder, host or date is part of it.
+/// The provenance of a file that this version makes from `scene`: its text and settings without video.jobs,
+/// which changes no byte; of a scene that code has filled in or changed, write_scene(). Without the scene if
+/// that is too large, or code alone can say it. No folder, host or date is part of it.
 [[nodiscard]] Provenance provenance_of(const Scene& scene);
 
-/// The provenance of videos that were joined. Parts of a joined one become its own.
-[[nodiscard]] Provenance joined(const std::vector<Provenance>& videos);
-
-/// As a JSON object of at most kMaxBytes. Scenes that do not fit are compressed; if that does not suffice,
-/// left out, and then also the picture and the parts. Positions of a golden picture are the bits of their
-/// numbers in hexadecimal.
+/// As a JSON object of at most kMaxBytes. A scene that does not fit is compressed; if that does not suffice,
+/// left out.
 [[nodiscard]] std::string provenance_text(Provenance provenance);
 
-/// "other fonts besides DejaVu Sans: A 1.0, now none"; empty if `now` are the fonts of the file.
-[[nodiscard]] std::string font_change(const Provenance& provenance, const std::vector<std::string>& now);
-
-/// Why a file with such a text carries no scene, or not all of its parts; empty if it does.
+/// Why a file with such a text carries no scene; empty if it does.
 [[nodiscard]] std::string left_out_of(const std::string& text);
 
 /// Provenance in the texts of a PNG; without a name if there is none, or it is damaged.
 [[nodiscard]] Provenance provenance_in(const PngInfo& info);
 
-/// For which advice errors give: a file of --from, or a part of a joined video.
-enum class OriginUse { kFrom, kJoin };
-
 /// Reads what a PNG or a video carries.
 /// Throws corda::Error: kIo if the file cannot be read, kUsage if it carries nothing, or what it carries is
 /// damaged.
-[[nodiscard]] Provenance read_provenance(const std::string& path, OriginUse use = OriginUse::kFrom);
+[[nodiscard]] Provenance read_provenance(const std::string& path);
 
 /// The scene of a file, with `settings` in place of what it says; messages name the file. Throws corda::Error
-/// (kUsage) for one with no scene, or several.
+/// (kUsage) for a file without one.
 [[nodiscard]] Scene scene_of(const Provenance& provenance, const std::string& path,
                              const std::vector<Setting>& settings = {});
 

@@ -67,6 +67,16 @@ void Canvas::Delete::operator()(Canvas* canvas) const {
     delete canvas;
 }
 
+namespace {
+
+OverlayDef with_font_path(const Scene& scene) {
+    OverlayDef overlay = scene.overlay;
+    overlay.font = font_path(scene);
+    return overlay;
+}
+
+}  // namespace
+
 SceneRenderer::SceneRenderer(const Scene& scene, const System& system, const std::string& backend,
                              bool require_gpu)
     : scene_(&scene),
@@ -74,7 +84,7 @@ SceneRenderer::SceneRenderer(const Scene& scene, const System& system, const std
       gl_(gl::ContextDef::parse(backend)),
       view_(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, scene.video.width_px,
             scene.video.height_px),
-      overlay_(scene.overlay, scene.style, scene.video.width_px, scene.video.height_px,
+      overlay_(with_font_path(scene), scene.style, scene.video.width_px, scene.video.height_px,
                scene.video.scene_rate().interval_s()) {
     gl_.require_gpu = require_gpu;
     overlay_.set_energy_scale(sim::energy_scale_j(system, sim::Forces(scene.world).on_particles(system)));

@@ -56,9 +56,9 @@ class VectorPage : NonCopyable {
     [[nodiscard]] virtual std::string finish() = 0;
 };
 
+/// This and all functions of the page throw corda::Error (kInternal) if cairo fails. Texts of an SVG are
+/// outlines of their glyphs.
 [[nodiscard]] std::unique_ptr<VectorPage> make_svg(const PageDef& def);
-
-/// This and all functions of the page throw corda::Error (kInternal) if cairo fails.
 [[nodiscard]] std::unique_ptr<VectorPage> make_pdf(const PageDef& def);
 
 }  // namespace corda::render

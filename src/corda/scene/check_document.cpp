@@ -6,13 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "corda/core/css_colors.hpp"
 #include "corda/core/image.hpp"
 #include "corda/core/removed.hpp"
 #include "corda/core/text.hpp"
 #include "corda/scene/schema.hpp"
 #include "corda/scene/table_reader.hpp"
-#include "corda/view/font.hpp"
 
 namespace corda::scene {
 namespace {
@@ -23,14 +21,6 @@ std::string other_home(std::string_view name) {
     const auto key = std::ranges::find(keys, name, &Key::name);
     if (key == keys.end()) return "";
     return fmt::format("; it is a key of {}", key->section.empty() ? "the top level" : key->section);
-}
-
-/// `; did you mean "blue"?`
-std::string hint_of_color(std::string_view text) {
-    std::vector<std::string_view> names;
-    for (const CssColor& color : kCssColors) names.push_back(color.name);
-    const auto meant = nearest(text, names);
-    return meant ? fmt::format("; did you mean \"{}\"?", *meant) : "";
 }
 
 /// Checks a value of one key.
@@ -159,14 +149,11 @@ class ValueChecker {
                         fmt::format("\"{}\" {}", excerpt(text),
                                     utf8(text) == text ? "has a control character" : "is not UTF-8"));
         }
-        const std::string missing = view::missing_glyph(text);
-        if (!missing.empty()) problems_->add(node.source(), path, missing);
-        return missing.empty();
+        return true;
     }
 
     bool check_color(const std::string& text, const toml::node& node, const std::string& path) const {
-        return Color::parse(text) ||
-               fail(node, path, fmt::format("\"{}\" is not a colour{}", excerpt(text), hint_of_color(text)));
+        return Color::parse(text) || fail(node, path, fmt::format("\"{}\" is not a colour", excerpt(text)));
     }
 
     [[nodiscard]] std::string_view one_words() const {

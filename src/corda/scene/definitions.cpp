@@ -5,6 +5,7 @@
 
 #include "corda/core/image.hpp"
 #include "corda/scene/readers.hpp"
+#include "corda/view/font.hpp"
 
 namespace corda::scene {
 
@@ -109,6 +110,15 @@ std::vector<DefProblem> problems_of(const GoldenDef& golden) {
         problems.push_back(
             {"size", {}, fmt::format("over the limit of {} pixels; give a smaller size", kMaxPicturePx)});
     return problems;
+}
+
+std::string problem_of_texts(const Scene& scene) {
+    try {
+        return view::missing_glyphs(shown_texts(scene), font_path(scene), scene.overlay.font);
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::kInvalidScene) throw;
+        return error.what();
+    }
 }
 
 }  // namespace corda::scene

@@ -109,6 +109,9 @@ struct DefProblem {
 /// Golden times that do not increase, and pictures that are too large.
 [[nodiscard]] std::vector<DefProblem> problems_of(const GoldenDef& golden);
 
+/// Why the font of a scene does not show its texts; empty if it does.
+[[nodiscard]] std::string problem_of_texts(const Scene& scene);
+
 struct BodySize {
     std::int64_t particles = 0;
     std::int64_t bars = 0;

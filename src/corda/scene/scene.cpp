@@ -13,6 +13,7 @@
 #include "corda/scene/field.hpp"
 #include "corda/scene/read_file.hpp"
 #include "corda/scene/readers.hpp"
+#include "corda/view/font.hpp"
 
 namespace corda {
 
@@ -66,6 +67,22 @@ void read_bodies(const Sections& sections, const SceneSize& size, const SolverSe
     }
 }
 
+/// One problem for all texts that cannot be shown, at the font or else at the first of them.
+void check_texts(const Sections& sections, const Scene& scene) {
+    const std::string problem = problem_of_texts(scene);
+    if (problem.empty()) return;
+    auto place = sections.overlay.find("font");
+    const auto look = [&](const TableReader& table, std::string_view key) {
+        const auto text = place ? std::nullopt : table.find(key);
+        if (text && !view::missing_glyphs({text->as<std::string>()}, "", "").empty()) place = text;
+    };
+    look(sections.overlay, "title");
+    for (const TableReader& text : sections.overlay.tables("texts")) look(text, "text");
+    for (const TableReader& rope : sections.ropes) look(rope, "label");
+    for (const TableReader& net : sections.nets) look(net, "label");
+    place->add_problem(problem);
+}
+
 }  // namespace
 
 Scene load_scene(const std::string& path, const std::vector<Setting>& settings) {
@@ -86,6 +103,9 @@ Scene parse_scene(std::string_view toml, const std::string& source_name, const s
     Scene scene;
     scene.name = std::filesystem::path(source_name).stem().string();
     scene.source = source_name;
+    scene.text = toml;
+    scene.settings = settings;
+    scene.settings.insert(scene.settings.end(), more.settings.begin(), more.settings.end());
     read_fields(sections.world, scene.world);
     const SolverSection solver = read_solver(sections, scene);
     read_section(sections.video, scene.video);
@@ -105,6 +125,7 @@ Scene parse_scene(std::string_view toml, const std::string& source_name, const s
     problems.throw_if_any();
     check_cancelled();
     check_section(sections.overlay, scene.overlay, scene.ropes);
+    check_texts(sections, scene);
     check_section(sections.style, scene.style, scene.ropes, scene.nets);
     problems.throw_if_any();
     return scene;
@@ -116,6 +137,18 @@ std::string_view solver_name(const SolverDef& solver) {
 
 SolverDef solver_of(const MethodDef& method) {
     return std::visit([](const auto& def) { return SolverDef(def); }, method);
+}
+
+std::vector<std::string> shown_texts(const Scene& scene) {
+    std::vector<std::string> texts{scene.overlay.title};
+    for (const OverlayTextDef& text : scene.overlay.texts) texts.push_back(text.text);
+    for (const BodyStyleDef& body : scene.body_styles) texts.push_back(body.label);
+    return texts;
+}
+
+std::string font_path(const Scene& scene) {
+    const std::string& font = scene.overlay.font;
+    return font.empty() ? "" : (std::filesystem::path(scene.source).parent_path() / font).string();
 }
 
 System system_of(const Scene& scene) {

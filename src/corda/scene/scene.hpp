@@ -106,8 +106,10 @@ void place(const GridDef& grid, NetDef& net);
 
 /// A validated scene file, as definitions of the other modules.
 struct Scene {
-    std::string name;    ///< the file's name without folder and ending
-    std::string source;  ///< the file's path, as messages name it
+    std::string name;                   ///< the file's name without folder and ending
+    std::string source;                 ///< the file's path, as messages name it
+    std::string text;                   ///< TOML that parse_scene() has read; empty: code filled the scene in
+    std::vector<std::string> settings;  ///< in place of what the text says
     WorldDef world;
     std::vector<RopeDef> ropes;
     std::vector<NetDef> nets;
@@ -145,6 +147,12 @@ struct PlacedSettings {
 /// The same for TOML text; `source_name` stands in the messages in place of the path. `more` come last.
 [[nodiscard]] Scene parse_scene(std::string_view toml, const std::string& source_name,
                                 const std::vector<Setting>& settings = {}, const PlacedSettings& more = {});
+
+/// The texts of a scene that people write: title, texts and labels.
+[[nodiscard]] std::vector<std::string> shown_texts(const Scene& scene);
+
+/// The path of the file OverlayDef::font; empty if there is none.
+[[nodiscard]] std::string font_path(const Scene& scene);
 
 /// The particles and bars of a scene at t = 0: its ropes, then its nets.
 [[nodiscard]] System system_of(const Scene& scene);

@@ -50,7 +50,7 @@ void complete(Key& key) {
 }
 
 constexpr std::string_view kColorWords =
-    R"(such as "tomato", "#e8c07d", "#e8c07d80" (with alpha) or "transparent")";
+    R"(such as "red", "#e8c07d", "#e8c07d80" (with alpha) or "transparent")";
 
 std::string kind_text(Kind kind) {
     constexpr std::array kTexts{"table",   "list of tables", "true or false",

@@ -13,15 +13,12 @@
 #include "corda/scene/document.hpp"
 #include "corda/scene/field.hpp"
 #include "corda/scene/readers.hpp"
-#include "corda/view/font.hpp"
 
 namespace corda {
 
 using namespace scene;  // the schema
 
 namespace {
-
-constexpr std::string_view kHashed = "hash ";
 
 [[noreturn]] void fail_unwritable(const std::string& problem) {
     throw_usage("a scene file cannot give this scene: {}", problem);
@@ -243,28 +240,16 @@ std::string text_of(const Table& table) {
            lines_of(table);
 }
 
-void add_to(std::map<std::string, std::string>& digest, const Table& table) {
-    constexpr std::size_t kMaxText = 64;
-    for (const Table& inner : table.inlined) add_to(digest, inner);
-    for (const auto& [key, toml] : table.values)
-        digest.emplace(dotted(table.path, key), toml.size() > kMaxText ? hashed(toml) : toml);
+void add_to(std::map<std::string, std::string>& values, const Table& table) {
+    for (const Table& inner : table.inlined) add_to(values, inner);
+    for (const auto& [key, toml] : table.values) values.emplace(dotted(table.path, key), toml);
 }
 
-std::map<std::string, std::string> digest_of(const Tables& tables) {
-    constexpr std::size_t kMaxBodies = 100;
-    std::map<std::string, std::string> digest;
-    for (const Table& table : tables.plain) add_to(digest, table);
-    for (const Table& table : tables.solver) add_to(digest, table);
-    std::map<std::string, std::string> bodies;
-    for (const Table& table : tables.bodies) add_to(bodies, table);
-    if (tables.bodies.size() <= kMaxBodies) {
-        digest.merge(bodies);
-        return digest;
-    }
-    std::string all;
-    for (const auto& [key, value] : bodies) all += fmt::format("{} = {}\n", key, value);
-    digest.emplace("scene.bodies", hashed(all));
-    return digest;
+std::map<std::string, std::string> values_of(const Tables& tables) {
+    std::map<std::string, std::string> values;
+    for (const auto* const some : {&tables.solver, &tables.plain, &tables.bodies})
+        for (const Table& table : *some) add_to(values, table);
+    return values;
 }
 
 }  // namespace
@@ -276,7 +261,7 @@ std::string write_scene(const Scene& scene) {
         for (const Table& table : *some) toml += text_of(table);
     std::vector<std::string> changes;
     try {
-        changes = differences(digest_of(tables), digest_of(Tables(parse_scene(toml, "scene"))));
+        changes = differences(values_of(tables), values_of(parse_scene(toml, scene.source)));
     } catch (const Error& error) {
         fail_unwritable(error.what());
     }
@@ -291,36 +276,13 @@ std::string write_solver_and_camera(const Scene& scene) {
     return toml.substr(1);
 }
 
-Setting solver_setting(const Scene& scene) {
-    const std::vector<Table> tables = solver_tables(scene);
-    std::string text = inline_text(tables.front());
-    std::vector<std::string> bodies;
-    for (std::size_t i = 1; i < tables.size(); ++i) bodies.push_back(inline_text(tables[i]));
-    if (!bodies.empty())
-        text.replace(text.size() - 2, 2, fmt::format(", bodies = [{}] }}", fmt::join(bodies, ", ")));
-    return "solver=" + text;
-}
-
-std::vector<std::string> shown_texts(const Scene& scene) {
-    std::vector<std::string> texts{scene.overlay.title};
-    for (const OverlayTextDef& text : scene.overlay.texts) texts.push_back(text.text);
-    for (const BodyStyleDef& body : scene.body_styles) texts.push_back(body.label);
-    return texts;
-}
-
-std::map<std::string, std::string> digest(const Scene& scene) {
-    std::map<std::string, std::string> digest = digest_of(Tables(scene));
-    const std::vector<std::string> fonts = view::fallback_names(shown_texts(scene));
-    if (!fonts.empty()) digest.emplace("fonts", fmt::format("{}", fmt::join(fonts, ", ")));
-    return digest;
-}
-
-std::string hashed(std::string_view text) {
-    return std::string(kHashed) + hash_text(text);
+std::map<std::string, std::string> values_of(const Scene& scene) {
+    return values_of(Tables(scene));
 }
 
 std::vector<std::string> differences(const std::map<std::string, std::string>& now,
                                      const std::map<std::string, std::string>& before) {
+    constexpr std::size_t kMaxText = 64;
     std::vector<std::string> changes;
     const auto value_in = [](const std::map<std::string, std::string>& values, const std::string& key) {
         const auto found = values.find(key);
@@ -330,7 +292,7 @@ std::vector<std::string> differences(const std::map<std::string, std::string>& n
         const std::string value = value_in(now, key);
         const std::string old = value_in(before, key);
         if (value == old) return;
-        const bool is_long = value.starts_with(kHashed) || old.starts_with(kHashed);
+        const bool is_long = std::max(value.size(), old.size()) > kMaxText;
         changes.push_back(is_long ? key + " has other values"
                                   : fmt::format("{} is {} and was {}", key, value, old));
     };
@@ -375,6 +337,8 @@ void check_definitions(const Scene& scene) {
     for (std::size_t i = 0; i < scene.overlay.texts.size(); ++i)
         check_all(fmt::format("overlay.texts[{}]", i), scene.overlay.texts[i]);
     check_all("overlay", scene.overlay, scene.ropes);
+    if (const std::string problem = problem_of_texts(scene); !problem.empty())
+        problems.add({}, "overlay.font", problem);
     check_all("style", scene.style, scene.ropes, scene.nets);
     check_all("camera", scene.camera, scene.ropes.size() + scene.nets.size());
     if (scene.golden) {

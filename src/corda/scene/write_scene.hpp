@@ -19,21 +19,11 @@ namespace corda {
 /// The tables [solver], [[solver.bodies]] and [camera] alone. Throws as write_scene().
 [[nodiscard]] std::string write_solver_and_camera(const Scene& scene);
 
-/// The table [solver] with its [[solver.bodies]] as a setting: "solver={method = "exact", tolerance = 1e-9}".
-[[nodiscard]] Setting solver_setting(const Scene& scene);
+/// The values of a written scene by their keys: "video.crf", "rope[0].hang.links". Scenes of equal values
+/// have equal frames, whatever they were read from.
+[[nodiscard]] std::map<std::string, std::string> values_of(const Scene& scene);
 
-/// The texts of a scene that people write: title, texts and labels.
-[[nodiscard]] std::vector<std::string> shown_texts(const Scene& scene);
-
-/// The values of a written scene by their keys ("video.crf", "rope[0].hang.links"), long ones as a hash.
-/// Scenes of equal digests have equal frames, whatever they were read from. A scene of more than a hundred
-/// bodies has one hash for all of them.
-[[nodiscard]] std::map<std::string, std::string> digest(const Scene& scene);
-
-/// A value that is too long to stand in a digest.
-[[nodiscard]] std::string hashed(std::string_view text);
-
-/// All differences between two digests: "video.crf is 18 and was 20". Empty if they are equal.
+/// All differences between values by their keys: "video.crf is 18 and was 20". Empty if they are equal.
 [[nodiscard]] std::vector<std::string> differences(const std::map<std::string, std::string>& now,
                                                    const std::map<std::string, std::string>& before);
 

@@ -107,7 +107,7 @@ std::string value_text(const Json& value) {
 std::map<std::string, std::string> identity_of(const SweepDef& sweep) {
     std::map<std::string, std::string> identity{
         {"version", std::string(version())},
-        {"scene", hashed(sweep.scene_name + "\n" + sweep.scene_toml)},
+        {"scene", hash_text(sweep.scene_name + "\n" + sweep.scene_toml)},
         {"grid", sweep.is_grid ? "true" : "false"},
         {"seed", std::to_string(sweep.seed)},
         {"shard_samples", std::to_string(sweep.shard_samples)},
@@ -129,7 +129,7 @@ std::map<std::string, std::string> identity_of(const SweepDef& sweep) {
                                 toml_of(distribution.first), toml_of(distribution.second),
                                 toml_of(distribution.min), toml_of(distribution.max));
         }
-        if (text.size() > kMaxIdentityText) text = hashed(text);
+        if (text.size() > kMaxIdentityText) text = hash_text(text);
     }
     return identity;
 }

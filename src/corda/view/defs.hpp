@@ -125,10 +125,13 @@ struct OverlayDef {
     std::optional<bool> time;
     std::optional<bool> scale_bar;  ///< a length of 1, 2 or 5 times a power of 10; default: as `time`
     std::optional<bool> legend;     ///< the scales of style.color_by and style.arrows; default: as `time`
-    std::string title;              ///< UTF-8, of characters that a font of the system has; empty: none
-    bool energy = false;            ///< the error of the energy (Figures::energy_error)
-    bool method = false;            ///< the methods, and their error estimate
-    std::vector<LivePlot> plots;    ///< each once; a frame without room for all shows the first ones
+    std::string title;              ///< UTF-8, of characters that the font has; empty: none
+    /// File with the font of title, texts and labels, from the scene's folder (Scene::source), or from the
+    /// working directory; empty: DejaVu Sans.
+    std::string font;
+    bool energy = false;          ///< the error of the energy (Figures::energy_error)
+    bool method = false;          ///< the methods, and their error estimate
+    std::vector<LivePlot> plots;  ///< each once; a frame without room for all shows the first ones
     Language language = Language::kEnglish;
     std::vector<OverlayTextDef> texts;  ///< not in a picture of several poses
     /// 4 .. 400: the size of the text at the edges; default: grows with the shorter side

@@ -67,6 +67,7 @@ struct Text {
     int size_px = 16;  ///< of the font's em
     Color color;
     std::string utf8;
+    std::string font = {};  ///< path of its file; empty: DejaVu Sans. Font::write() sets it
 };
 
 /// A filled rectangle or the glyphs of a text, painted over the layers.

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <ft2build.h>
 #include FT_FREETYPE_H
+#include FT_ERRORS_H
 
 #include "corda/core/text.hpp"
 
@@ -50,17 +51,22 @@ void check_font(FT_Error error) {
 
 }  // namespace
 
-FontFile::FontFile(const FallbackFont* font) {
+FontFile::FontFile(const std::string& path) {
     FT_Error error = FT_Init_FreeType(&library_);
     if (error == 0) {
-        error = font != nullptr
-                    ? FT_New_Face(library_, font->path.c_str(), font->index, &face_)
-                    : FT_New_Memory_Face(library_, corda_font_begin,
-                                         static_cast<FT_Long>(corda_font_end - corda_font_begin), 0, &face_);
-        if (error != 0) FT_Done_FreeType(library_);
+        error = path.empty()
+                    ? FT_New_Memory_Face(library_, corda_font_begin,
+                                         static_cast<FT_Long>(corda_font_end - corda_font_begin), 0, &face_)
+                    : FT_New_Face(library_, path.c_str(), 0, &face_);
+        if (error == 0 && FT_IS_SCALABLE(face_)) return;
+        if (error == 0) FT_Done_Face(face_);
+        FT_Done_FreeType(library_);
     }
-    if (error != 0)
+    if (path.empty())
         throw Error(ExitCode::kInternal, "FreeType: the font cannot be read: error " + std::to_string(error));
+    if (error == FT_Err_Cannot_Open_Resource)
+        throw_error(ExitCode::kInvalidScene, "'{}' cannot be opened; give the path of a font", path);
+    throw_error(ExitCode::kInvalidScene, "'{}' is no font with outlines; give a .ttf or .otf file", path);
 }
 
 FontFile::~FontFile() {
@@ -86,9 +92,7 @@ struct Font::Impl {
     }
 
     Glyph load(char32_t character, int size_px) {
-        const FallbackFont* const other = font_of(character);
-        const FT_Face face =
-            other == nullptr ? file.face() : others.try_emplace(other, other).first->second.face();
+        const FT_Face face = file.face();
         check_font(FT_Set_Pixel_Sizes(face, 0, static_cast<FT_UInt>(size_px)));
         check_font(FT_Load_Char(face, character, FT_LOAD_RENDER | FT_LOAD_TARGET_LIGHT | FT_LOAD_NO_BITMAP));
         const FT_GlyphSlot slot = face->glyph;
@@ -122,105 +126,61 @@ struct Font::Impl {
         return x_px;
     }
 
-    /// The font of a character; null: DejaVu Sans.
-    [[nodiscard]] const FallbackFont* font_of(char32_t character) const {
-        return FT_Get_Char_Index(file.face(), character) != 0 ? nullptr : fallback_font(character);
-    }
+    explicit Impl(const std::string& file_path) : path(file_path), file(file_path) {}
 
+    std::string path;
     FontFile file;
-    std::map<const FallbackFont*, FontFile> others;
     std::map<std::pair<int, char32_t>, Glyph> glyphs;
 };
 
-Font::Font() : impl_(std::make_unique<Impl>()) {}
+Font::Font(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
 Font::Font(Font&&) noexcept = default;
 Font& Font::operator=(Font&&) noexcept = default;
 Font::~Font() = default;
 
-std::string missing_glyph(const std::string& text) {
-    const std::u32string missing = text.empty() ? U"" : Font().missing(text);
-    if (missing.empty()) return "";
-    std::string shaped;
-    std::string emoji;
-    std::string controls;
-    std::string others;
-    std::string packages;
-    for (const char32_t character : missing) {
-        std::string& names = needs_shaping(character)   ? shaped
-                             : is_emoji(character)      ? emoji
-                             : can_fall_back(character) ? others
-                                                        : controls;
-        names += fmt::format("{}U+{:04X}", names.empty() ? "" : ", ", static_cast<std::uint32_t>(character));
-        if (!can_fall_back(character)) continue;
-        // Hangul, kana and ideographs, and the signs between them.
-        const bool is_east_asian = (character >= 0x1100 && character < 0x1200) ||
-                                   (character >= 0x2e80 && character < 0xd800) ||
-                                   (character >= 0xf900 && character < 0xfb00) ||
-                                   (character >= 0xfe30 && character < 0xfff0) || character >= 0x20000;
-        const std::string package = is_east_asian ? " fonts-noto-cjk" : " fonts-noto-core";
-        if (packages.find(package) == std::string::npos) packages += package;
-    }
-    std::string reasons;
-    const auto add = [&reasons](const std::string& reason) { reasons += reason + "; "; };
-    const auto verb = [](const std::string& names, const char* one, const char* several) {
-        return names + (names.find(',') == std::string::npos ? one : several);
+bool needs_shaping(char32_t character) {
+    struct Range {
+        char32_t first;
+        char32_t last;
     };
-    if (!shaped.empty()) add(verb(shaped, " needs", " need") + " text shaping, which is not done");
-    if (!emoji.empty())
-        add(verb(emoji, " is an emoji", " are emoji") + ", whose coloured fonts are not drawn");
-    if (!controls.empty()) add("the font, DejaVu Sans, has no " + controls);
-    const char* const leave_out =
-        missing.size() == 1 ? "leave that character out" : "leave these characters out";
-    if (others.empty()) return reasons + leave_out;
-    return fmt::format("{}no font of this machine has {}; install one (Debian: apt-get install{}), or {}",
-                       reasons, others, packages, leave_out);
+    constexpr Range kShaped[] = {{0x0590, 0x109f}, {0x1700, 0x18af},   {0x1900, 0x1c7f},  {0x1cc0, 0x1cff},
+                                 {0xa800, 0xa95f}, {0xa980, 0xab2f},   {0xabc0, 0xabff},  {0xfb1d, 0xfdff},
+                                 {0xfe70, 0xfefe}, {0x10800, 0x11fff}, {0x1e800, 0x1efff}};
+    return std::ranges::any_of(kShaped, [character](const Range& range) {
+        return character >= range.first && character <= range.last;
+    });
 }
 
-std::vector<const FallbackFont*> fallback_fonts(const std::vector<std::string>& texts) {
-    std::vector<const FallbackFont*> fonts;
-    const Font font;
-    for (const std::string& text : texts) {
-        for (const FontRun& run : font.runs_of(text)) {
-            const auto has_its_name = [&](const FallbackFont* other) {
-                return other->name() == run.font->name();
-            };
-            if (run.font != nullptr && std::ranges::none_of(fonts, has_its_name)) fonts.push_back(run.font);
-        }
+std::string missing_glyphs(const std::vector<std::string>& texts, const std::string& path,
+                           const std::string& name) {
+    std::string all;
+    for (const std::string& text : texts) all += text;
+    if (all.empty() && path.empty()) return "";
+    std::string shaped;
+    std::string others;
+    for (const char32_t character : Font(path).missing(all)) {
+        std::string& names = needs_shaping(character) ? shaped : others;
+        names += fmt::format("{}U+{:04X}", names.empty() ? "" : ", ", static_cast<std::uint32_t>(character));
     }
-    return fonts;
-}
-
-std::vector<std::string> fallback_names(const std::vector<std::string>& texts) {
-    std::vector<std::string> names;
-    for (const FallbackFont* const font : fallback_fonts(texts)) names.push_back(font->name());
-    return names;
+    std::string problem;
+    if (!shaped.empty())
+        problem = fmt::format("the letters of {} change next to others, which is not done; ", shaped);
+    if (!others.empty())
+        problem += fmt::format(
+            "{} has no {}; name a font that has all characters (overlay.font = \"file.ttf\"), or ",
+            path.empty() ? "DejaVu Sans" : fmt::format("'{}'", name), others);
+    return problem.empty() ? "" : problem + "leave these characters out";
 }
 
 std::u32string Font::missing(std::string_view utf8) const {
     std::u32string missing;
     while (!utf8.empty()) {
         const char32_t character = take_character(utf8);
-        const bool is_known = missing.find(character) != std::u32string::npos;
-        if (!is_known &&
-            (needs_shaping(character) ||
-             (FT_Get_Char_Index(impl_->file.face(), character) == 0 && fallback_font(character) == nullptr)))
-            missing += character;
+        const bool is_shown =
+            !needs_shaping(character) && FT_Get_Char_Index(impl_->file.face(), character) != 0;
+        if (!is_shown && missing.find(character) == std::u32string::npos) missing += character;
     }
     return missing;
-}
-
-std::vector<FontRun> Font::runs_of(std::string_view utf8) const {
-    std::vector<FontRun> runs;
-    while (!utf8.empty()) {
-        const std::string_view rest = utf8;
-        const FallbackFont* const font = impl_->font_of(take_character(utf8));
-        const std::size_t bytes = rest.size() - utf8.size();
-        if (!runs.empty() && runs.back().font == font)
-            runs.back().utf8 = {runs.back().utf8.data(), runs.back().utf8.size() + bytes};
-        else
-            runs.push_back({rest.substr(0, bytes), font});
-    }
-    return runs;
 }
 
 int Font::width_px(std::string_view utf8, int size_px) {
@@ -273,6 +233,7 @@ void Font::write(const Text& text, DrawList& list) {
         });
     list.stamps.push_back({box, text.color, first});
     list.texts.push_back(text);
+    list.texts.back().font = impl_->path;
 }
 
 int rounded(double px) {

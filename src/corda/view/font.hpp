@@ -14,41 +14,16 @@ struct FT_FaceRec_;
 
 namespace corda::view {
 
-/// A font of this machine for characters that DejaVu Sans lacks.
-struct FallbackFont {
-    std::string path;
-    int index = 0;  ///< of the face in the file
-    std::string family;
-    std::string version;
-
-    [[nodiscard]] std::string name() const { return family + " " + version; }
-};
-
 /// True for scripts that run from the right or whose letters change next to others, which takes more than
 /// placing glyphs side by side.
 [[nodiscard]] bool needs_shaping(char32_t character);
 
-/// True for emoji, whose fonts hold coloured pictures.
-[[nodiscard]] bool is_emoji(char32_t character);
-
-/// False for characters that are never looked up: those above and control characters.
-[[nodiscard]] bool can_fall_back(char32_t character);
-
-/// The font that fontconfig finds for a character; null if there is none. Threads may call it at once. Fonts
-/// live until the process ends.
-[[nodiscard]] const FallbackFont* fallback_font(char32_t character);
-
-/// A part of a text in one font; null: DejaVu Sans.
-struct FontRun {
-    std::string_view utf8;
-    const FallbackFont* font = nullptr;
-};
-
-/// DejaVu Sans, which is part of the program, or another font, as FreeType reads it.
+/// A font as FreeType reads it.
 class FontFile : NonCopyable {
   public:
-    /// Throws corda::Error (kInternal) if it cannot be read.
-    explicit FontFile(const FallbackFont* font = nullptr);
+    /// `path`: empty for DejaVu Sans, which is part of the program. Throws corda::Error (kInvalidScene) for a
+    /// file that cannot be read or is no font with outlines.
+    explicit FontFile(const std::string& path = {});
     ~FontFile();
 
     [[nodiscard]] FT_FaceRec_* face() const { return face_; }
@@ -58,23 +33,20 @@ class FontFile : NonCopyable {
     FT_FaceRec_* face_ = nullptr;
 };
 
-/// Draws text in DejaVu Sans, with other fonts for what it lacks. Glyphs stand on whole pixels; all digits
-/// are equally wide.
+/// Draws text in a font. Glyphs stand on whole pixels; all digits of DejaVu Sans are equally wide.
 ///
-/// Text is UTF-8. A character that no font has, a control character or an invalid byte is drawn as a box.
+/// Text is UTF-8. A character that the font lacks, a control character or an invalid byte is drawn as a box.
 /// Rendered glyphs are cached, so one thread at a time may use a Font.
 class Font {
   public:
-    /// Throws corda::Error (kInternal) if the font cannot be read.
-    Font();
+    /// As FontFile.
+    explicit Font(const std::string& path = {});
     Font(Font&&) noexcept;
     Font& operator=(Font&&) noexcept;
     ~Font();
 
-    /// The characters of a text that no font has or that need shaping, each once and in order.
+    /// The characters of a text that the font lacks or that need shaping, each once and in order.
     [[nodiscard]] std::u32string missing(std::string_view utf8) const;
-    /// The parts of a text by their fonts.
-    [[nodiscard]] std::vector<FontRun> runs_of(std::string_view utf8) const;
     /// Advance width of a text, in pixels.
     [[nodiscard]] int width_px(std::string_view utf8, int size_px);
     /// The text, or its beginning and an ellipsis if it is wider than `room_px`; empty without room. It ends
@@ -91,13 +63,10 @@ class Font {
     std::unique_ptr<Impl> impl_;
 };
 
-/// The reasons a text cannot be shown: "U+0628 needs text shaping, which is not done; leave that character
-/// out", or install a font. Empty if it can.
-[[nodiscard]] std::string missing_glyph(const std::string& text);
-
-/// The fallback fonts of texts, each name once: "WenQuanYi Micro Hei 0.200".
-[[nodiscard]] std::vector<const FallbackFont*> fallback_fonts(const std::vector<std::string>& texts);
-[[nodiscard]] std::vector<std::string> fallback_names(const std::vector<std::string>& texts);
+/// Why texts cannot be shown, with a remedy: "DejaVu Sans has no U+6F22, U+5B57; ...". Empty if they can.
+/// `path`: of their font, as FontFile; `name`: that file in messages. Throws as FontFile.
+[[nodiscard]] std::string missing_glyphs(const std::vector<std::string>& texts, const std::string& path,
+                                         const std::string& name);
 
 // Sizes of text as shares of the em.
 inline constexpr double kAscent = 0.76;   ///< of DejaVu's capitals

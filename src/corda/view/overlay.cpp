@@ -113,7 +113,8 @@ Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int he
       arrow_color_(arrow_color(style)),
       side_px_(std::min(width, height)),
       em_px_(def.text_px ? rounded(*def.text_px) : em_of(width, height)),
-      edge_px_(edge_of(side_px_, em_px_)) {
+      edge_px_(edge_of(side_px_, em_px_)),
+      words_(def.font) {
     const PlotLayout layout = lay_out_plots(def.plots.size(), width, height);
     width_ = layout.width_px;
     height_ = layout.height_px;
@@ -134,12 +135,13 @@ Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int he
 }
 
 void Overlay::set_plots(std::span<const PlotData> data, std::span<const Color> body_colors) {
-    for (std::size_t i = 0; i < plots_.size(); ++i) plots_[i].set_data(data[i], body_colors, 0, font_);
+    for (std::size_t i = 0; i < plots_.size(); ++i)
+        plots_[i].set_data(data[i], body_colors, 0, font_, words_);
     std::map<int, int> widest_px;  // by the left edge of panels above each other
     for (const PlotPanel& plot : plots_)
         widest_px[plot.panel().x0] = std::max(widest_px[plot.panel().x0], plot.label_px());
     for (std::size_t i = 0; i < plots_.size(); ++i)
-        plots_[i].set_data(data[i], body_colors, widest_px[plots_[i].panel().x0], font_);
+        plots_[i].set_data(data[i], body_colors, widest_px[plots_[i].panel().x0], font_, words_);
 }
 
 bool Overlay::has_bottom() const {
@@ -172,9 +174,9 @@ std::vector<Overlay::TopLine> Overlay::wrapped(std::string text, int size_px,
     for (;;) {
         const int room = room_px(static_cast<int>(lines.size()));
         std::size_t end = std::string::npos;
-        if (font_.width_px(text, size_px) > room && lines.size() + 1 < kMaxLines)
+        if (words_.width_px(text, size_px) > room && lines.size() + 1 < kMaxLines)
             for (std::size_t space = text.find(' ');
-                 space != std::string::npos && font_.width_px(text.substr(0, space), size_px) <= room;
+                 space != std::string::npos && words_.width_px(text.substr(0, space), size_px) <= room;
                  space = text.find(' ', space + 1))
                 end = space;
         lines.push_back({text.substr(0, end), room});
@@ -186,7 +188,7 @@ std::vector<Overlay::TopLine> Overlay::wrapped(std::string text, int size_px,
 bool Overlay::wrap_title() {
     title_lines_ = wrapped(def_.title, title_px(),
                            [this](int line) { return room_px(title_top_px_ + line * title_line_px()); });
-    return font_.width_px(title_lines_.back().text, title_px()) <= title_lines_.back().room_px;
+    return words_.width_px(title_lines_.back().text, title_px()) <= title_lines_.back().room_px;
 }
 
 void Overlay::lay_out_top() {
@@ -200,7 +202,7 @@ void Overlay::lay_out_top() {
     const int below_px = legend_baseline_px() + rounded((kDescent + kGap) * em_px_);
     title_top_px_ = edge_px_;
     title_lines_ = {{def_.title, beside_px}};
-    const auto is_one_line = [&] { return font_.width_px(def_.title, em_px_) <= title_lines_[0].room_px; };
+    const auto is_one_line = [&] { return words_.width_px(def_.title, em_px_) <= title_lines_[0].room_px; };
     // A tiny frame is for the picture.
     if (side_px_ >= kMinSidePx && !is_one_line() && (beside_px < kMinBeside * all_px || !wrap_title())) {
         if (beside_px < all_px) title_top_px_ = below_px;
@@ -226,11 +228,11 @@ void Overlay::draw_text(const OverlayTextDef& text, DrawList& list) {
     int y_px = rounded(text.at.y * list.height + 0.5 * kAscent * em_px_) - more_px / 2;
     y_px = std::clamp(y_px, highest_px, std::max(highest_px, bottom_px - more_px));
     for (const TopLine& line : lines) {
-        const std::string shown = font_.shortened(line.text, em_px_, line.room_px);
-        const int width_px = font_.width_px(shown, em_px_);
+        const std::string shown = words_.shortened(line.text, em_px_, line.room_px);
+        const int width_px = words_.width_px(shown, em_px_);
         const int most_px = std::max(edge_px_, end_px - width_px);
         const int x_px = std::clamp(rounded(text.at.x * list.width - 0.5 * width_px), edge_px_, most_px);
-        font_.write({x_px, y_px, em_px_, color_, shown}, list);
+        words_.write({x_px, y_px, em_px_, color_, shown}, list);
         y_px += line_px;
     }
 }
@@ -259,8 +261,8 @@ void Overlay::set_labels(std::vector<BodyLabel> labels, std::span<const MotionBo
     labels_ = std::move(labels);
     const int most_px = rounded(std::max(kMaxLabel * width_, kShortLabel * em_px_));
     for (BodyLabel& label : labels_) {
-        label.text = font_.shortened(std::move(label.text), em_px_, most_px);
-        const double width_px = font_.width_px(label.text, em_px_);
+        label.text = words_.shortened(std::move(label.text), em_px_, most_px);
+        const double width_px = words_.width_px(label.text, em_px_);
         const double clear_px = label.clear_px + (kGap + label.row * kLine) * em_px_;
         Drawn text;
         text.bounds = motion[label.particle];
@@ -302,14 +304,14 @@ void Overlay::draw_curves(double time_s, DrawList& list) const {
 }
 
 PixelRect Overlay::label_box(const BodyLabel& label, PixelPoint at, PixelPoint from, int turns,
-                             double clear_px) {
+                             double clear_px, Font& font) {
     PixelPoint along{at.x - from.x, at.y - from.y};
     const double length = sim::length(along.x, along.y);
     along = length > 0.0 ? PixelPoint{along.x / length, along.y / length} : PixelPoint{0.0, -1.0};
     constexpr double kHalfRoot = 0.70710678118654752;
     for (int i = 0; i < turns; ++i)
         along = {kHalfRoot * (along.x - along.y), kHalfRoot * (along.x + along.y)};
-    const int width_px = font_.width_px(label.text, em_px_);
+    const int width_px = font.width_px(label.text, em_px_);
     const double middle_px = at.x + along.x * (clear_px + 0.5 * width_px);
     const double baseline_px = at.y + along.y * clear_px + 0.5 * (1.0 + along.y) * kAscent * em_px_;
     // Beyond the frame, pixels may be more than an int holds.
@@ -320,8 +322,8 @@ PixelRect Overlay::label_box(const BodyLabel& label, PixelPoint at, PixelPoint f
 
 void Overlay::draw_label(const BodyLabel& label, PixelPoint at, PixelPoint from, DrawList& list) {
     const double clear_px = label.clear_px + (kGap + label.row * kLine) * em_px_;
-    const PixelRect box = label_box(label, at, from, 0, clear_px);
-    if (!box.empty()) font_.write({box.x0, box.y1, em_px_, color_, label.text}, list);
+    const PixelRect box = label_box(label, at, from, 0, clear_px, words_);
+    if (!box.empty()) words_.write({box.x0, box.y1, em_px_, color_, label.text}, list);
 }
 
 void Overlay::draw_times(std::span<const PoseTime> poses, DrawList& list) {
@@ -349,7 +351,8 @@ void Overlay::draw_times(std::span<const PoseTime> poses, DrawList& list) {
         };
         for (int i = 0; i < 16; ++i) {  // near, then farther away
             const double clear_px = pose->label.clear_px + gap_px + (i < 8 ? 0.0 : kLine * em_px_);
-            const PixelRect box = label_box(pose->label, pose->at, pose->from, kTurns[i % 8], clear_px);
+            const PixelRect box =
+                label_box(pose->label, pose->at, pose->from, kTurns[i % 8], clear_px, font_);
             if (!is_free(box) || !is_clear(box)) continue;
             Color color = color_;
             color.a = static_cast<std::uint8_t>(std::lround(255.0 * std::max(kFaintest, pose->opacity)));
@@ -365,7 +368,7 @@ std::string Overlay::time_text(double time_s) const {
 }
 
 void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& list) {
-    for (const PlotPanel& plot : plots_) plot.draw_axes(list, font_);
+    for (const PlotPanel& plot : plots_) plot.draw_axes(list, font_, words_);
     for (std::size_t i = 0; i < caption.labels.size(); ++i)
         draw_label(labels_[i], caption.labels[i].first, caption.labels[i].second, list);
     int left_px = edge_px_;
@@ -387,7 +390,7 @@ void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& li
     for (std::size_t i = 0; i < title_lines_.size(); ++i) {
         const auto below = static_cast<int>(title_lines_.size() - 1 - i);
         write_top(title_lines_[i], " ", title_baseline_px() - below * title_line_px(), title_size_px, color_,
-                  list);
+                  words_, list);
     }
     for (const OverlayTextDef& text : def_.texts) {
         const double time_s = caption.time_s.value_or(-1.0);
@@ -396,16 +399,16 @@ void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& li
     constexpr std::uint8_t kDim = 0xb0;
     if (def_.method)
         write_top({caption.method, room_px(method_baseline_px_ - rounded(kAscent * em_px_))}, ", ",
-                  method_baseline_px_, em_px_, {color_.r, color_.g, color_.b, kDim}, list);
+                  method_baseline_px_, em_px_, {color_.r, color_.g, color_.b, kDim}, font_, list);
 }
 
 int Overlay::fitting_title_px() {
     const int room_px = title_lines_[0].room_px;
     int size_px = title_px();
-    const int width_px = font_.width_px(def_.title, size_px);
+    const int width_px = words_.width_px(def_.title, size_px);
     if (width_px <= room_px) return size_px;
     size_px = std::max(em_px_, rounded(static_cast<double>(size_px) * room_px / width_px));
-    while (size_px > em_px_ && font_.width_px(def_.title, size_px) > room_px) --size_px;
+    while (size_px > em_px_ && words_.width_px(def_.title, size_px) > room_px) --size_px;
     return size_px;
 }
 
@@ -487,9 +490,9 @@ void Overlay::draw_gradient(const PixelRect& bar, DrawList& list) const {
 }
 
 void Overlay::write_top(const TopLine& line, std::string_view separator, int baseline_px, int size_px,
-                        Color color, DrawList& list) {
-    font_.write(
-        {edge_px_, baseline_px, size_px, color, font_.shortened(line.text, size_px, line.room_px, separator)},
+                        Color color, Font& font, DrawList& list) {
+    font.write(
+        {edge_px_, baseline_px, size_px, color, font.shortened(line.text, size_px, line.room_px, separator)},
         list);
 }
 

@@ -121,14 +121,14 @@ class Overlay {
     void draw_legend(DrawList& list);
     /// The box of a label in the direction of its line, turned by an eighth turn `turns` times.
     [[nodiscard]] PixelRect label_box(const BodyLabel& label, PixelPoint at, PixelPoint from, int turns,
-                                      double clear_px);
+                                      double clear_px, Font& font);
     void draw_label(const BodyLabel& label, PixelPoint at, PixelPoint from, DrawList& list);
     void draw_gradient(const PixelRect& bar, DrawList& list) const;
     /// Size of a title of one line: smaller, down to the size of the other texts, if it would not fit.
     int fitting_title_px();
     /// Writes a line at the left of an upper baseline, shortened at a separator.
     void write_top(const TopLine& line, std::string_view separator, int baseline_px, int size_px, Color color,
-                   DrawList& list);
+                   Font& font, DrawList& list);
 
     OverlayDef def_;
     bool time_;
@@ -155,7 +155,8 @@ class Overlay {
     int method_baseline_px_ = 0;
     std::vector<TopLine> title_lines_;
     int decimals_ = 2;
-    Font font_;
+    Font font_;   ///< of numbers and the program's words
+    Font words_;  ///< of title, texts and labels
     std::vector<PlotPanel> plots_;
 };
 

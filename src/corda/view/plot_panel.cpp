@@ -129,7 +129,7 @@ PlotPanel::PlotPanel(const StyleDef& style, int width_px, int height_px, const P
 }
 
 void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_colors, int least_label_px,
-                         Font& font) {
+                         Font& font, Font& words) {
     const bool is_over_time = data.end_s > 0.0;
     const auto start_axis = [&](const PlotData::AxisName& name, const ValueRange& range) {
         PlotAxis axis;
@@ -164,7 +164,7 @@ void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_color
         }
         curves_.push_back({curve.name, color, {}, {}, curve.points});
     }
-    place_names(font);
+    place_names(words);
     const bool is_drawable = can_be_divided(plot_.x.high - plot_.x.low) &&
                              (data.y.is_log || can_be_divided(plot_.y.high - plot_.y.low));
     has_room_ = !is_drawable || place_box(is_over_time, least_label_px, font);
@@ -306,7 +306,7 @@ void PlotPanel::draw_curves(double time_s, DrawList& list) const {
     }
 }
 
-void PlotPanel::draw_axes(DrawList& list, Font& font) const {
+void PlotPanel::draw_axes(DrawList& list, Font& font, Font& words) const {
     if (!is_shown_) return;
     plot_.draw_axes(faint(text_color_, kBoxAlpha), text_color_, list, font);
     const int row_px = rounded(kLine * name_em_px_);
@@ -315,7 +315,8 @@ void PlotPanel::draw_axes(DrawList& list, Font& font) const {
     const int title_x_px = names_.empty() ? std::min(plot_.box.x0, last_px) : names_.front().x_px;
     font.write({title_x_px, title_px, plot_.em_px, text_color_, plot_.y.title}, list);
     for (const Name& name : names_)
-        font.write({name.x_px, title_px + (name.row + 1) * row_px, name_em_px_, name.color, name.text}, list);
+        words.write({name.x_px, title_px + (name.row + 1) * row_px, name_em_px_, name.color, name.text},
+                    list);
 }
 
 }  // namespace corda::view

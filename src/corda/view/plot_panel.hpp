@@ -67,7 +67,8 @@ class PlotPanel {
 
     /// Sets the data and fits the axes to them. Nothing is drawn before the first call. `least_label_px`:
     /// minimum width of the labels of the y axis.
-    void set_data(const PlotData& data, std::span<const Color> body_colors, int least_label_px, Font& font);
+    void set_data(const PlotData& data, std::span<const Color> body_colors, int least_label_px, Font& font,
+                  Font& words);
     /// Width of the labels of the y axis: panels above each other have the same.
     [[nodiscard]] int label_px() const { return label_px_; }
     [[nodiscard]] const PixelRect& panel() const { return panel_; }
@@ -78,7 +79,7 @@ class PlotPanel {
     /// Adds the curves up to a time, between points by straight lines.
     void draw_curves(double time_s, DrawList& list) const;
     /// Adds the parts that do not change.
-    void draw_axes(DrawList& list, Font& font) const;
+    void draw_axes(DrawList& list, Font& font, Font& words) const;
 
   private:
     struct PixelCurve {

@@ -23,6 +23,16 @@ std::string svg_of(const Plot& plot) {
     return draw_plot(plot, PlotFormat::kSvg, kPageMm);
 }
 
+/// The words of a plot, one line each.
+std::string words_of(const Plot& plot) {
+    const test::ScratchFolder folder;
+    const std::string pdf = folder.write("a.pdf", draw_plot(plot, PlotFormat::kPdf, kPageMm));
+    return "\n" + run_shell("pdftotext -raw " + pdf + " -").out;
+}
+
+/// Of strokes of #123456 in an SVG.
+constexpr const char* kInk = "stroke:rgb(7.058824%,20.392157%,33.72549%)";
+
 std::size_t count_of(std::string_view text, std::string_view word) {
     std::size_t count = 0;
     for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1))
@@ -46,10 +56,10 @@ TEST(DrawPlot, TakesAnyTextAndAnyPoints) {
             std::ignore = folder.write(plot.id + "." + ending(format), draw_plot(plot, format, kPageMm));
     }
     EXPECT_EQ(run_shell("cd " + folder.path() + " && xmllint --noout --nonet *.svg").err, "");
-    EXPECT_THAT(test::read_file(folder.file("error.svg")),
-                AllOf(HasSubstr(">Error, a_b, &quot;q&quot; &lt;b&gt;&amp;amp; | *x* 'y' `touch pwned`"),
-                      HasSubstr(">Step / s<"), HasSubstr(">exact<"), Not(HasSubstr(">never<"))));
-    EXPECT_THAT(test::read_file(folder.file("pointless.svg")), HasSubstr(">10⁰<"));
+    EXPECT_THAT(words_of(small_plot()),
+                AllOf(HasSubstr("Error, a_b, \"q\" <b>&amp; | *x* 'y' `touch pwned`"), HasSubstr("Step / s"),
+                      HasSubstr("exact"), Not(HasSubstr("never"))));
+    EXPECT_THAT(words_of(pointless), HasSubstr("10⁰"));
 }
 
 TEST(DrawPlot, HasLettersOfEightPointsAtAnyWidthInPrint) {
@@ -71,8 +81,7 @@ TEST(DrawPlot, HasLettersOfEightPointsAtAnyWidthInPrint) {
             << words.out;
         EXPECT_NEAR(bottom - top, 1.164 * 8.0, 0.15);
         EXPECT_THAT(draw_plot(plot, PlotFormat::kSvg, width_mm),
-                    AllOf(HasSubstr("width=\"" + std::to_string(width_mm) + "mm\" height="),
-                          HasSubstr("font-size=\"33\""), Not(HasSubstr("\">Error, a_b"))));
+                    AllOf(HasSubstr("width=\"" + std::to_string(width_mm) + "mm\" height=")));
     }
     EXPECT_EQ(file_stem("a", 85, {85, 170}), "a_85mm");
     EXPECT_EQ(file_stem("a", 85, {85}), "a");
@@ -81,12 +90,11 @@ TEST(DrawPlot, HasLettersOfEightPointsAtAnyWidthInPrint) {
 TEST(DrawPlot, HasPowersOfTenOnLogarithmicAxes) {
     Plot plot = small_plot();
     plot.series = {{"a", {{2e-3, 0.5}, {0.7, 3.0}}}};
-    const std::string svg = svg_of(plot);
-    for (const char* label : {">10⁻³<", ">10⁻²<", ">10⁻¹<", ">10⁰<", ">10¹<"})
-        EXPECT_THAT(svg, HasSubstr(label));
-    EXPECT_THAT(svg, Not(HasSubstr(">10⁻⁴<")));
+    const std::string words = words_of(plot);
+    for (const char* label : {"10⁻³", "10⁻²", "10⁻¹", "10⁰", "10¹"}) EXPECT_THAT(words, HasSubstr(label));
+    EXPECT_THAT(words, Not(HasSubstr("10⁻⁴")));
     plot.log_x = plot.log_y = false;
-    EXPECT_THAT(svg_of(plot), AllOf(HasSubstr(">0.5<"), Not(HasSubstr(">10⁰<"))));
+    EXPECT_THAT(words_of(plot), AllOf(HasSubstr("0.5"), Not(HasSubstr("10⁰"))));
 }
 
 TEST(DrawPlot, BreaksLinesAtPointsWithoutAPlace) {
@@ -95,8 +103,8 @@ TEST(DrawPlot, BreaksLinesAtPointsWithoutAPlace) {
     plot.series = {{"", {{1.0, 1.0}, {2.0, 2.0}, {3.0, 0.0}, {4.0, 2.0}, {5.0, 3.0}}}};
     plot.series[0].color = "#123456";
     const std::string svg = svg_of(plot);
-    const std::string layer = svg.substr(svg.find("<g stroke=\"#123456\""));
-    EXPECT_EQ(count_of(layer.substr(0, layer.find("</g>")), "M"), 2U);
+    const std::string path = svg.substr(svg.find(kInk));
+    EXPECT_EQ(count_of(path.substr(0, path.find("/>")), "M "), 2U);
 }
 
 TEST(DrawPlot, OfAPathHasEqualScales) {
@@ -108,9 +116,10 @@ TEST(DrawPlot, OfAPathHasEqualScales) {
     plot.series[0].color = "#123456";
     const std::string svg = svg_of(plot);
     std::vector<double> at(6);
-    const char* const path = svg.c_str() + svg.find("d=\"M", svg.find("<g stroke=\"#123456\""));
-    ASSERT_EQ(
-        std::sscanf(path, "d=\"M%lf %lfL%lf %lf %lf %lf", &at[0], &at[1], &at[2], &at[3], &at[4], &at[5]), 6)
+    const char* const path = svg.c_str() + svg.find("d=\"M", svg.find(kInk));
+    ASSERT_EQ(std::sscanf(path, "d=\"M %lf %lf L %lf %lf L %lf %lf", &at[0], &at[1], &at[2], &at[3], &at[4],
+                          &at[5]),
+              6)
         << std::string(path, 60);
     EXPECT_NEAR(at[1] - at[5], 0.5 * (at[2] - at[0]), 1.5);
 }
@@ -131,10 +140,12 @@ TEST(DrawPlot, HasGreyContextBehindTheOthersWithOneEntryInTheKey) {
                    {.name = "d", .points = {{1.0, 4.0}}, .look = 3}};
     plot.context_name = "the rest";
     const std::string svg = svg_of(plot);
-    EXPECT_LT(svg.find("stroke=\"#b4bac2\""), svg.find("stroke=\"#0072b2\""));
-    EXPECT_LT(svg.find("stroke=\"#0072b2\""), svg.find("stroke=\"#cc79a7\""));  // its own look
-    EXPECT_EQ(count_of(svg, ">the rest<"), 1U);
-    EXPECT_EQ(count_of(svg, ">b<") + count_of(svg, ">c<"), 0U);
+    const std::size_t blue = svg.find("rgb(0%,44.705882%,69.803922%)");
+    EXPECT_LT(svg.find("rgb(70.588235%,72.941176%,76.078431%)"), blue);
+    EXPECT_LT(blue, svg.find("rgb(80%,47.45098%,65.490196%)"));  // its own look
+    const std::string words = words_of(plot);
+    EXPECT_EQ(count_of(words, "the rest"), 1U);
+    EXPECT_EQ(count_of(words, "\nb\n") + count_of(words, "\nc\n"), 0U);
 }
 
 TEST(DrawPlot, HasBarsOfSpreadsInTheColourOfTheirSeries) {
@@ -142,9 +153,9 @@ TEST(DrawPlot, HasBarsOfSpreadsInTheColourOfTheirSeries) {
     plot.has_markers = false;
     plot.series = {{.name = "", .points = {}, .color = "#123456"}};
     plot.series[0].add(1.0, 2.0, {1.5, 3.0});
-    EXPECT_THAT(svg_of(plot), HasSubstr("<g stroke=\"#123456\""));
+    EXPECT_THAT(svg_of(plot), HasSubstr(kInk));
     plot.series[0].spreads.clear();
-    EXPECT_THAT(svg_of(plot), Not(HasSubstr("<g stroke=\"#123456\"")));
+    EXPECT_THAT(svg_of(plot), Not(HasSubstr(kInk)));
 }
 
 TEST(DrawPlot, HasRoomForTheBarsOfSpreads) {
@@ -153,11 +164,10 @@ TEST(DrawPlot, HasRoomForTheBarsOfSpreads) {
     plot.series = {{.name = "", .points = {}, .color = "#123456"}};
     plot.series[0].add(1.0, 2.0, {3e-3, 500.0});
     plot.series[0].add(2.0, 2.0, {0.0, 1e9});  // not drawn: a logarithmic axis has no place for 0
-    const std::string log_svg = svg_of(plot);
-    EXPECT_THAT(log_svg, AllOf(HasSubstr(">10⁻³<"), HasSubstr(">10³<"), Not(HasSubstr(">10⁴<"))));
+    EXPECT_THAT(words_of(plot), AllOf(HasSubstr("10⁻³"), HasSubstr("10³"), Not(HasSubstr("10⁴"))));
     plot.log_x = plot.log_y = false;
     plot.series[0].spreads = {{-40.0, 3.0}, {1.0, 70.0}};
-    EXPECT_THAT(svg_of(plot), AllOf(HasSubstr(">−40<"), HasSubstr(">60<")));
+    EXPECT_THAT(words_of(plot), AllOf(HasSubstr("−40"), HasSubstr("60")));
 }
 
 TEST(DrawPlot, KeepsEveryExtremeOfALongCurve) {

@@ -158,9 +158,6 @@ TEST(ReportFolder, IsWellFormedWhateverATextIs) {
     EXPECT_EQ(svgs.exit_code, 0) << svgs.err;
     const auto utf8 = run_shell(enter + "cat *.csv *.html *.svg | iconv -f UTF-8 -t UTF-16");
     EXPECT_EQ(utf8.exit_code, 0) << utf8.err;
-    EXPECT_THAT(test::read_file(folder.file("id3.svg")), HasSubstr(">a''b'''c<"));
-    EXPECT_THAT(test::read_file(folder.file("id4.svg")), HasSubstr(">]]&gt;<"));
-    EXPECT_THAT(test::read_file(folder.file("id6.svg")), HasSubstr(">\\x1b[31m\\x07\\x0a\\x09\\x7f<"));
     EXPECT_THAT(test::read_file(folder.file("id7.csv")), HasSubstr("caf\\xe9,caf\\xe9\n"));
     EXPECT_FALSE(std::filesystem::exists("pwned"));
 }

@@ -74,7 +74,7 @@ hang = { links = 2, length = 1, angle_deg = inf } | 3:45 rope[0].hang.angle_deg 
 hang = { length = 1 } | 3:8 rope[0].hang | give links, the number of links, or particles | { => { links = 2, ; { => { particles = 2,
 hang = { links = 2, particles = 3, length = 1 } | 3:8 rope[0].hang | links and particles are both given; keep one of them | links = 2, =>
 hang = { particles = 1, length = 1 } | 3:22 rope[0].hang.particles | 1 is not >= 2
-hang = { links = 2, length = 1 }\nlabel = "\\U0001f9f6" | 4:9 rope[0].label | U+1F9F6 is an emoji
+hang = { links = 2, length = 1 }\nlabel = "\\U0001f9f6" | 4:9 rope[0].label | DejaVu Sans has no U+1F9F6; name a font that has all characters (overlay.font = "file.ttf"), or leave these characters out
 hang = { links = 3, length = 1 }\nclosed = true | 4:10 rope[0].closed | give points
 points = [[0, 0]] | 3:10 rope[0].points | this is a list of 1; give the positions of the particles
 points = [[0, 0], [1]] | 3:19 rope[0].points[1] | this is a list of 1, not [
@@ -283,7 +283,7 @@ subframes = 65 | 4:13 video.subframes | 65 is not <= 64
 
 constexpr const char* kOfViews = R"(
 @style
-background = "clear" | 4:14 style.background | "clear" is not a colour; give a colour such as "tomato", "#e8c07d", "#e8c07d80" (with alpha) or "transparent" | clear => tomato ; clear => #e8c07d ; clear => #e8c07d80 ; clear => transparent
+background = "clear" | 4:14 style.background | "clear" is not a colour; give a colour such as "red", "#e8c07d", "#e8c07d80" (with alpha) or "transparent" | clear => red ; clear => #e8c07d ; clear => #e8c07d80 ; clear => transparent
 background = ["#000000"] | 4:14 style.background | [top, bottom]
 background = ["#000000", "#0000"] | 4:26 style.background[1] | is not a colour
 theme = "light" | 4:9 style.theme | give one of: dark, paper | light => paper
@@ -307,7 +307,11 @@ tittle = "a" | 4:1 overlay.tittle | did you mean "title"?
 title = 3 | 4:9 overlay.title | give the title, at the upper left as one line
 title = "a\\nb" | 4:9 overlay.title | has a control character
 title = "a\\u202eb" | 4:9 overlay.title | has a control character
-title = "yarn \\U0001f9f6" | 4:9 overlay.title | U+1F9F6 is an emoji, whose coloured fonts are not drawn; leave that character out
+title = "yarn \\U0001f9f6" | 4:9 overlay.title | DejaVu Sans has no U+1F9F6; name a font
+title = "\\u6f22"\ntexts = [{ text = "\\u5b57" }] | 4:9 overlay.title | DejaVu Sans has no U+6F22, U+5B57; name a font
+title = "\\u0633" | 4:9 overlay.title | the letters of U+0633 change next to others, which is not done; leave
+font = "none.ttf" | 4:8 overlay.font | 'none.ttf' cannot be opened; give the path of a font
+font = "/dev/null" | 4:8 overlay.font | '/dev/null' is no font with outlines; give a .ttf or .otf file
 language = "it" | 4:12 overlay.language | "it" is unknown; give one of:  | "it" => "pt"
 plots = "energy" | 4:9 overlay.plots | "energy" is a string, not a list; write ["energy"] | "energy" => ["energy"]
 plots = ["tip", "tip"] | 4:17 overlay.plots[1] | the same plot twice; remove one | , "tip" =>

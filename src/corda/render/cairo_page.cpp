@@ -1,13 +1,17 @@
 #include <cairo-ft.h>
 #include <cairo-pdf.h>
+#include <cairo-svg.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <string_view>
+#include <vector>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
+#include "corda/core/markup.hpp"
 #include "corda/core/text.hpp"
 #include "corda/render/paint.hpp"
 #include "corda/render/vector.hpp"
@@ -39,7 +43,7 @@ cairo_status_t append_bytes(void* file, const unsigned char* bytes, unsigned cou
 void check(cairo_status_t status) {
     if (status == CAIRO_STATUS_SUCCESS) return;
     if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
-    throw_error(ExitCode::kInternal, "cairo cannot draw the PDF: {}", cairo_status_to_string(status));
+    throw_error(ExitCode::kInternal, "cairo cannot draw the page: {}", cairo_status_to_string(status));
 }
 
 Pattern solid(const Color& color) {
@@ -61,7 +65,7 @@ Pattern pattern_of(const Ground& ground, int height) {
 }
 
 /// The face owns the font file, because cairo may keep the face longer than the page lives.
-FontFace make_font_face(const view::FallbackFont* font) {
+FontFace make_font_face(const std::string& font) {
     static const cairo_user_data_key_t key{};
     auto file = std::make_unique<view::FontFile>(font);
     FontFace face(
@@ -72,19 +76,80 @@ FontFace make_font_face(const view::FallbackFont* font) {
     return face;
 }
 
-class Pdf : public VectorPage {
+/// An SVG of cairo whose identifiers, which are unique in this process, are numbers from 0 behind `prefix`.
+std::string with_ids(std::string_view svg, const std::string& prefix) {
+    constexpr std::string_view kId = " id=\"";
+    std::map<std::string_view, std::size_t> numbers;
+    std::string made;
+    while (!svg.empty()) {
+        const std::size_t id = svg.find(kId);
+        const std::size_t reference = svg.find('#');
+        const std::size_t begin = std::min(id == std::string_view::npos ? svg.size() : id + kId.size(),
+                                           reference == std::string_view::npos ? svg.size() : reference + 1);
+        made += svg.substr(0, begin);
+        svg.remove_prefix(begin);
+        const std::string_view name = svg.substr(0, svg.find_first_of("\")"));
+        if (!name.empty())
+            made += prefix + std::to_string(numbers.try_emplace(name, numbers.size()).first->second);
+        svg.remove_prefix(name.size());
+    }
+    return made;
+}
+
+/// An SVG of cairo with a title, and with identifiers that no other figure has: several may stand in one page
+/// of HTML.
+std::string finished_svg(const std::string& svg, const std::string& title) {
+    const std::string plain = with_ids(svg, "n");
+    std::string made = with_ids(plain, "c" + hash_text(title + plain).substr(0, 8) + "-");
+    const std::size_t root = made.find('>', made.find("<svg"));
+    made.insert(root + 1, "\n<title>" + markup_text(title) + "</title>");
+    return made;
+}
+
+/// The capsules with a halo of a layer, in groups of which no two touch.
+std::vector<std::vector<view::Capsule>> halos_apart(const view::DrawList& list, const view::Layer& layer) {
+    const auto touch = [](const view::Capsule& a, const view::Capsule& b) {
+        const auto apart = [&](float a0, float ua, float b0, float ub) {
+            const float a1 = a0 + ua * a.length;
+            const float b1 = b0 + ub * b.length;
+            return std::max(std::min(a0, a1) - std::max(b0, b1), std::min(b0, b1) - std::max(a0, a1)) >
+                   a.halo_radius + b.halo_radius;
+        };
+        return !apart(a.ax, a.ux, b.ax, b.ux) && !apart(a.ay, a.uy, b.ay, b.uy);
+    };
+    std::vector<std::vector<view::Capsule>> groups;
+    for (std::size_t i = layer.first_capsule; i < layer.first_capsule + layer.capsule_count; ++i) {
+        const view::Capsule& capsule = list.capsules[i];
+        if (capsule.halo_radius <= 0.0F) continue;
+        check_cancelled();
+        const auto is_free = [&](const std::vector<view::Capsule>& group) {
+            return std::ranges::none_of(group,
+                                        [&](const view::Capsule& other) { return touch(capsule, other); });
+        };
+        const auto group = std::ranges::find_if(groups, is_free);
+        (group == groups.end() ? groups.emplace_back() : *group).push_back(capsule);
+    }
+    return groups;
+}
+
+class CairoPage : public VectorPage {
   public:
-    explicit Pdf(const PageDef& def) {
-        const double width_pt = def.width_mm * kPointsPerMm;
-        const double scale = width_pt / def.width_px;
-        surface_.reset(
-            cairo_pdf_surface_create_for_stream(append_bytes, &bytes_, width_pt, scale * def.height_px));
-        cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_TITLE,
-                                       printable(def.title).c_str());
-        cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_CREATOR, "corda");
-        // The default is the current time, which would make every file different.
-        cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_CREATE_DATE,
-                                       "2000-01-01T00:00:00Z");
+    CairoPage(const PageDef& def, bool is_svg) : is_svg_(is_svg), title_(printable(def.title)) {
+        const double width = is_svg ? def.width_mm : def.width_mm * kPointsPerMm;
+        const double scale = width / def.width_px;
+        const double height = scale * def.height_px;
+        if (is_svg) {
+            surface_.reset(cairo_svg_surface_create_for_stream(append_bytes, &bytes_, width, height));
+            cairo_svg_surface_set_document_unit(surface_.get(), CAIRO_SVG_UNIT_MM);
+            cairo_svg_surface_restrict_to_version(surface_.get(), CAIRO_SVG_VERSION_1_1);
+        } else {
+            surface_.reset(cairo_pdf_surface_create_for_stream(append_bytes, &bytes_, width, height));
+            cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_TITLE, title_.c_str());
+            cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_CREATOR, "corda");
+            // The default is the current time, which would make every file different.
+            cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_CREATE_DATE,
+                                           "2000-01-01T00:00:00Z");
+        }
         cairo_.reset(cairo_create(surface_.get()));
         cairo_scale(cairo_.get(), scale, scale);
         cairo_set_line_cap(cairo_.get(), CAIRO_LINE_CAP_ROUND);
@@ -129,7 +194,7 @@ class Pdf : public VectorPage {
         check(cairo_status(cairo_.get()));
         cairo_surface_finish(surface_.get());
         check(cairo_surface_status(surface_.get()));
-        return std::move(bytes_);
+        return is_svg_ ? finished_svg(bytes_, title_) : std::move(bytes_);
     }
 
   private:
@@ -160,24 +225,15 @@ class Pdf : public VectorPage {
         cairo_fill(cairo_.get());
     }
 
-    /// Places glyphs like Font::write(), as text that can be searched and copied.
+    /// Places glyphs like Font::write(); in a PDF, as text that can be searched and copied.
     void write(const view::Text& text) {
-        const std::string utf8 = printable(text.utf8);
-        view::Text part = text;
-        for (const view::FontRun& run : font_.runs_of(utf8)) {
-            FontFace& face = faces_[run.font];
-            if (!face) face = make_font_face(run.font);
-            part.utf8 = run.utf8;
-            write(part, face.get());
-            part.x_px += font_.width_px(run.utf8, text.size_px);
-        }
-    }
-
-    void write(const view::Text& text, cairo_font_face_t* face) {
         cairo_t* const cairo = cairo_.get();
-        const std::string& utf8 = text.utf8;
+        const std::string utf8 = printable(text.utf8);
         const auto bytes = static_cast<int>(utf8.size());
-        cairo_set_font_face(cairo, face);
+        view::Font& font = fonts_.try_emplace(text.font, text.font).first->second;
+        FontFace& face = faces_[text.font];
+        if (!face) face = make_font_face(text.font);
+        cairo_set_font_face(cairo, face.get());
         cairo_set_font_size(cairo, text.size_px);
         cairo_set_source(cairo, solid(text.color).get());
         cairo_glyph_t* glyphs = nullptr;
@@ -190,7 +246,7 @@ class Pdf : public VectorPage {
                                                &cluster_count, &flags));
         std::size_t done = 0;
         for (int i = 0; i < std::min(glyph_count, cluster_count); ++i) {
-            glyphs[i].x = text.x_px + font_.width_px(std::string_view(utf8).substr(0, done), text.size_px);
+            glyphs[i].x = text.x_px + font.width_px(std::string_view(utf8).substr(0, done), text.size_px);
             done += static_cast<std::size_t>(clusters[i].num_bytes);
         }
         cairo_show_text_glyphs(cairo, utf8.data(), bytes, glyphs, glyph_count, clusters, cluster_count,
@@ -199,26 +255,28 @@ class Pdf : public VectorPage {
         cairo_text_cluster_free(clusters);
     }
 
-    /// Erases the layers below the halos of a layer. PDF has no operator that erases, so everything is drawn
-    /// again outside of the halos. A transparent layer erases as much as an opaque one.
+    /// Erases the layers below the halos of a layer. PDF and SVG have no operator that erases, so everything
+    /// is drawn again outside of the halos. A transparent layer erases as much as an opaque one.
     void cut_out(const view::DrawList& list, const view::Layer& layer) {
         cairo_t* const cairo = cairo_.get();
         const Pattern below(cairo_pop_group(cairo));
         cairo_push_group(cairo);
         cairo_save(cairo);
-        cairo_set_fill_rule(cairo, CAIRO_FILL_RULE_EVEN_ODD);
-        for (std::size_t i = layer.first_capsule; i < layer.first_capsule + layer.capsule_count; ++i) {
-            const view::Capsule& capsule = list.capsules[i];
-            if (capsule.halo_radius <= 0.0F) continue;
-            const double bx = capsule.ax + static_cast<double>(capsule.ux) * capsule.length;
-            const double by = capsule.ay + static_cast<double>(capsule.uy) * capsule.length;
-            const double right = std::atan2(capsule.uy, capsule.ux) - 0.5 * std::numbers::pi;
+        for (const std::vector<view::Capsule>& group : halos_apart(list, layer)) {
             cairo_rectangle(cairo, 0.0, 0.0, list.width, list.height);
-            cairo_new_sub_path(cairo);
-            cairo_arc(cairo, bx, by, capsule.halo_radius, right, right + std::numbers::pi);
-            cairo_arc(cairo, capsule.ax, capsule.ay, capsule.halo_radius, right + std::numbers::pi,
-                      right + 2.0 * std::numbers::pi);
-            cairo_close_path(cairo);
+            for (const view::Capsule& capsule : group) {
+                const double bx = capsule.ax + static_cast<double>(capsule.ux) * capsule.length;
+                const double by = capsule.ay + static_cast<double>(capsule.uy) * capsule.length;
+                const double right = std::atan2(capsule.uy, capsule.ux) - 0.5 * std::numbers::pi;
+                const double left = right + std::numbers::pi;
+                // Against the direction of the rectangle, a hole by either rule: cairo does not tell the rule
+                // of a clip in SVG so that viewers understand it.
+                cairo_new_sub_path(cairo);
+                cairo_arc_negative(cairo, capsule.ax, capsule.ay, capsule.halo_radius,
+                                   left + std::numbers::pi, left);
+                cairo_arc_negative(cairo, bx, by, capsule.halo_radius, left, right);
+                cairo_close_path(cairo);
+            }
             cairo_clip(cairo);
         }
         cairo_set_source(cairo, below.get());
@@ -226,8 +284,10 @@ class Pdf : public VectorPage {
         cairo_restore(cairo);
     }
 
-    view::Font font_;
-    std::map<const view::FallbackFont*, FontFace> faces_;
+    bool is_svg_;
+    std::string title_;
+    std::map<std::string, view::Font> fonts_;  ///< by the paths of their files
+    std::map<std::string, FontFace> faces_;
     // The surface writes to bytes_ until it is destroyed.
     std::string bytes_;
     std::unique_ptr<cairo_surface_t, CairoDeleter> surface_;
@@ -236,8 +296,12 @@ class Pdf : public VectorPage {
 
 }  // namespace
 
+std::unique_ptr<VectorPage> make_svg(const PageDef& def) {
+    return std::make_unique<CairoPage>(def, true);
+}
+
 std::unique_ptr<VectorPage> make_pdf(const PageDef& def) {
-    return std::make_unique<Pdf>(def);
+    return std::make_unique<CairoPage>(def, false);
 }
 
 }  // namespace corda::render
