@@ -109,8 +109,7 @@ struct SceneOptions {
 
   private:
     void check_size_from_file(const VideoDef& video) const;
-    /// Warns if other fonts draw its texts.
-    [[nodiscard]] Scene load_from(const Console& console, const Provenance& origin) const;
+    [[nodiscard]] Scene load_from(const Provenance& origin) const;
 
     std::string from_;
     std::vector<Setting> of_options_;          ///< those of `settings` that did not come from --set

@@ -176,13 +176,13 @@ bool SceneOptions::gives_size() const {
                                [](const Setting& setting) { return setting.starts_with("video.size"); });
 }
 
-Scene SceneOptions::load_from(const Console& console, const Provenance& origin) const {
+Scene SceneOptions::load_from(const Provenance& origin) const {
     return load_with(settings, of_options_,
                      [&](const std::vector<Setting>& some) { return scene_of(origin, from_, some); });
 }
 
 Scene SceneOptions::load(const Console& console) const {
-    Scene scene = is_from() ? load_from(console, provenance(console)) : parse({}, {}, {});
+    Scene scene = is_from() ? load_from(provenance(console)) : parse({}, {}, {});
     if (is_from()) check_size_from_file(scene.video);
     warn_of_unseen_texts(console, scene);
     return scene;
