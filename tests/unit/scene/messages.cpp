@@ -287,7 +287,7 @@ background = "clear" | 4:14 style.background | "clear" is not a colour; give a c
 background = ["#000000"] | 4:14 style.background | [top, bottom]
 background = ["#000000", "#0000"] | 4:26 style.background[1] | is not a colour
 theme = "light" | 4:9 style.theme | give one of: dark, paper | light => paper
-palette = [] | 4:11 style.palette | the list is empty; give a list of colours such as "tomato", "#e8c07d" | [] => ["#e8c07d"]
+palette = [] | 4:11 style.palette | the list is empty; give a list of colours such as "red", "#e8c07d" | [] => ["#e8c07d"]
 palette = ["#000000", "bleu"] | 4:23 style.palette[1] | did you mean "blue"?
 rope_width_px = 1001 | 4:17 style.rope_width_px | 1001 is not <= 1000
 markers = "al" | 4:11 style.markers | did you mean "all"?
