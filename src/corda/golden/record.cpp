@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "corda/core/text.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/scene/write_scene.hpp"
 
