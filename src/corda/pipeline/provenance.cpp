@@ -51,7 +51,8 @@ Json json_of(const PictureOrigin& picture) {
 /// Throws what the JSON library throws for other types.
 GoldenRecord golden_of(const Json& json) {
     GoldenRecord golden{.renderer = json.at("renderer").get<std::string>()};
-    for (const auto& [key, value] : json.value("chosen", Json::object()).items())
+    const Json chosen = json.value("chosen", Json::object());
+    for (const auto& [key, value] : chosen.items())
         golden.chosen.emplace(printable(key), printable(value.get<std::string>()));
     return golden;
 }

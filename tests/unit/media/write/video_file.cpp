@@ -211,12 +211,13 @@ TEST_F(Video, AFileThatAppearedMeanwhileIsNotReplaced) {
     EXPECT_EQ(test::read_file(file("a.mp4")), "precious");
 }
 
-TEST_F(Video, ForceReplacesTheFileBehindALink) {
+TEST_F(Video, ForceReplacesALinkAndNotItsFile) {
     test::write_file(file("real.mp4"), "old");
     fs::create_symlink("real.mp4", file("a.mp4"));
     make_video(file("a.mp4"), small_video(), 4);
-    EXPECT_TRUE(fs::is_symlink(file("a.mp4")));
-    EXPECT_EQ(test::probe(file("real.mp4")).frames, 4);
+    EXPECT_FALSE(fs::is_symlink(file("a.mp4")));
+    EXPECT_EQ(test::probe(file("a.mp4")).frames, 4);
+    EXPECT_EQ(test::read_file(file("real.mp4")), "old");
 }
 
 TEST_F(Video, AFullDiskIsAnIoErrorAndLeavesNoFile) {
