@@ -275,8 +275,7 @@ TEST_F(GoldenReview, ComparesWhatTheMaskShows) {
 }
 
 TEST_F(GoldenReview, NamesWhatChangedThePixels) {
-    EXPECT_THAT(run({"--set", "video.fps=1000"}).out,
-                HasSubstr("video.fps is 1000 and was 60 (by --set)"));
+    EXPECT_THAT(run({"--set", "video.fps=1000"}).out, HasSubstr("video.fps is 1000 and was 60 (by --set)"));
 }
 
 TEST_F(GoldenReview, ReportsFailuresToPullRequests) {

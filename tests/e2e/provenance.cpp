@@ -186,8 +186,8 @@ TEST_F(ProvenanceOfFiles, DamagedProvenanceIsRefused) {
         bad.replace(bad.find(from), from.size(), to);
         EXPECT_EQ(code_of(bad), 2) << bad;
     }
-    for (const std::string& parts : std::vector<std::string>{R"("packed_scene":"")", R"("packed_scene":1)",
-                                                             R"("settings":1)"}) {
+    for (const std::string& parts :
+         std::vector<std::string>{R"("packed_scene":"")", R"("packed_scene":1)", R"("settings":1)"}) {
         write_png(folder().file("bad.png"), Image(8, 8),
                   {.text = {{"Provenance", R"({"corda":"0.1.0","name":"a",)" + parts + "}"}}},
                   {.force = true});

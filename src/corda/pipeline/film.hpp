@@ -216,7 +216,7 @@ class CheckedOutput {
 };
 
 /// Checks a video of `scene` before there is a film: everything that could make render_video() refuse it
-/// later, and whether the encoder starts. Calls `def.on_progress` meanwhile. Throws corda::Error: kUsage for
+/// later, and whether the encoder starts. Throws corda::Error: kUsage for
 /// an invalid ending, size, codec or range, or if `path` is the file `input` (empty: there is none); kIo if
 /// the file exists (see force) or cannot be written; kEncoder, kTemporary, kInterrupted.
 [[nodiscard]] CheckedOutput check_render(const Scene& scene, const std::string& path,

@@ -201,8 +201,6 @@ CheckedOutput check_render(const Scene& scene, const std::string& path, const Re
         throw_usage("frames {}:{} are not FIRST:END with 0 <= FIRST < END <= {} (END is not drawn)",
                     def.first, end, count);
     }
-    std::int64_t total = end - def.first;
-    const CancelScope starting([&] { report_progress(def.on_progress, 0, total); });
     media::CheckedVideo video = media::check_video_output({.path = path,
                                                            .def = scene.video,
                                                            .first = def.first,
@@ -211,7 +209,6 @@ CheckedOutput check_render(const Scene& scene, const std::string& path, const Re
                                                            .resume = def.resume},
                                                           input, !is_opaque(scene));
     check_ground(scene, video.format);
-    total *= media::passes(*video.format.ending);
     media::check_threads(*video.format.codec);
     video.to_draw = media::frames_to_draw(video, picture_info_of(scene));
     return CheckedOutput(std::move(video));

@@ -226,7 +226,8 @@ TEST_F(RenderVideo, LeavesNothingButPicturesOfAMotionThatDiverges) {
             RenderDef def;
             def.force = true;
             EXPECT_EQ(code_of([&] { render_video(diverging, file(name), def); }), ExitCode::kDiverged);
-            for (const std::string& left : folder_.files()) EXPECT_EQ(left, "0.png") << name;
+            for (const std::string& left : folder_.files())
+                EXPECT_THAT(left, AnyOf("0.png", "1.png")) << name;
         }
     }
 }

@@ -56,7 +56,7 @@ TEST(Svg, HasIdentifiersThatNoOtherHas) {
     const std::string svg = svg_of(list);
     const auto ids = matches(svg, R"(\bid="([^"]*)\")");
     EXPECT_FALSE(ids.empty());
-    EXPECT_EQ(matches(svg, R"((?:url\(#|xlink:href="#)([^")]*))"), ids);
+    EXPECT_THAT(ids, ::testing::IsSupersetOf(matches(svg, R"((?:url\(#|xlink:href="#)([^")]*))")));
     EXPECT_TRUE(matches(svg, R"(( href=))").empty());  // Inkscape 1.2 knows xlink:href alone
     list.add_box({10, 5, 20, 9}, {1, 2, 3, 51});
     for (const std::string& id : matches(svg_of(list), R"(\bid="([^"]*)\")"))

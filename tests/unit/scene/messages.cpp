@@ -119,7 +119,7 @@ pinned = [3] | 4:11 rope[0].pinned[0] | 3 is out of range; the rope has particle
 pinned = [-4] | 4:11 rope[0].pinned[0] | -4 is out of range
 pinned = [2, 0, -1] | 4:17 rope[0].pinned[2] | particle 2 is given twice; remove one | , 0, -1] => ]
 color = 3 | 4:9 rope[0].color | 3 is an integer, not text
-color = "redd" | 4:9 rope[0].color | "redd" is not a colour; did you mean "red"?
+color = "redd" | 4:9 rope[0].color | "redd" is not a colour; give a colour such as "red", "#e8c07d", "#e8c07d80" (with alpha) or "transparent"
 width_px = 0 | 4:12 rope[0].width_px | 0 is not >= 0.1
 compliance = -1 | 4:14 rope[0].compliance | -1 is not >= 0
 compliance = 2e6 | 4:14 rope[0].compliance | is not <= 1e6; give
@@ -136,7 +136,7 @@ compliance = 1\nlink_length = 0 | 5:15 rope[0].link_length | 0 is not >= 1e-12; 
 compliance = 1\nlink_length = [1, "2"] | 5:19 rope[0].link_length[1] | "2" is a string, not a number
 color = ["red", "blue"] | 4:9 rope[0].color | set style.color_by = "link", or give one colour | + [style]\ncolor_by = "link" ; ["red", "blue"] => "red"
 color = ["red", 3] | 4:17 rope[0].color[1] | 3 is an integer, not text
-color = ["red", "bleu"] | 4:17 rope[0].color[1] | did you mean "blue"
+color = ["red", "bleu"] | 4:17 rope[0].color[1] | "bleu" is not a colour
 color = ["red", "#00ff0080"]\n[style]\ncolor_by = "link" | 4:17 rope[0].color[1] | another alpha than that of the first link
 color = [] | 4:9 rope[0].color | the list is empty
 )";
@@ -285,10 +285,10 @@ constexpr const char* kOfViews = R"(
 @style
 background = "clear" | 4:14 style.background | "clear" is not a colour; give a colour such as "red", "#e8c07d", "#e8c07d80" (with alpha) or "transparent" | clear => red ; clear => #e8c07d ; clear => #e8c07d80 ; clear => transparent
 background = ["#000000"] | 4:14 style.background | [top, bottom]
-background = ["#000000", "#0000"] | 4:26 style.background[1] | is not a colour
+background = ["#000000", "#00000"] | 4:26 style.background[1] | is not a colour
 theme = "light" | 4:9 style.theme | give one of: dark, paper | light => paper
 palette = [] | 4:11 style.palette | the list is empty; give a list of colours such as "red", "#e8c07d" | [] => ["#e8c07d"]
-palette = ["#000000", "bleu"] | 4:23 style.palette[1] | did you mean "blue"?
+palette = ["#000000", "bleu"] | 4:23 style.palette[1] | "bleu" is not a colour
 rope_width_px = 1001 | 4:17 style.rope_width_px | 1001 is not <= 1000
 markers = "al" | 4:11 style.markers | did you mean "all"?
 bars = "imaginary" | 4:8 style.bars | give one of: none, real, all
