@@ -69,6 +69,7 @@ if [[ "${1:-build}" == long ]]; then
         python3-pandas      # reads the table of a sweep: examples/sweep
         jupyter-nbconvert   # runs the example notebook
         python3-ipykernel   # the kernel of the notebook
+        valgrind            # memory that an encoder reads and nothing wrote
         chromium            # plays videos, and shows pages with scripts
         parallel            # runs the tasks of a sweep or a film: examples/cluster
         python3-distributed # the same on Dask

@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""Renders small videos with every codec and container, each with three fillings of fresh memory: the bytes must be the same.
+
+An encoder that reads memory that nothing wrote makes other bytes on another run.
+Usage: encoder_bytes.py CORDA
+CORDA_TEST_LONG=1 renders every size with every preset, and looks for such reads by valgrind as well.
+"""
+
+import hashlib
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree
+
+IS_LONG = bool(os.environ.get("CORDA_TEST_LONG"))
+SCENE = """schema = 1
+world = { duration = 4.0, gravity = 3.73 }
+video = { fps = 15, jobs = 1 }
+[[rope]]
+hang = { links = 12, length = 1.0, angle_deg = 9.394409849494874 }
+"""
+CLEAR = ["--set", "style.background=transparent"]
+OF_X264 = ["ultrafast", "veryfast", "medium"]
+# Ending, codec and more options; presets; sizes. Odd sizes are padded where 4:2:0 needs it.
+SIZES = ["16x16", "33x17", "64x64", "96x54"]
+OF_64 = ["64x64", "65x91", "96x96"]  # which have no smaller ones
+FORMATS = [
+    (".mp4 --codec libx264", OF_X264, SIZES),
+    (".mp4 --codec libx264 --pix 444", OF_X264, SIZES),
+    (".mp4 --codec libx265", OF_X264, OF_64),
+    (".mp4 --codec libsvtav1", ["12", "10", "8"], OF_64),
+    (".webm --codec libsvtav1", ["12", "10", "8"], OF_64),
+    (".webm --codec libaom-av1", ["8", "7", "6"], OF_64),
+    (".webm --codec libvpx-vp9", ["8", "6", "4"], SIZES),
+    (".webm CLEAR", ["8", "6", "4"], SIZES),
+    (".mov", [None], SIZES),
+    (".mov CLEAR", [None], SIZES),
+    (".mkv", [None], SIZES),
+    (".mkv CLEAR", [None], SIZES),
+    (".gif", [None], SIZES),
+]
+ENCODERS = re.compile(r"lib(x264|x265|SvtAv1Enc|aom|vpx|avcodec|avformat)")
+
+
+def cases():
+    """The ending and the options of each video."""
+    for k, (words, presets, sizes) in enumerate(FORMATS):
+        ending, *options = words.replace("CLEAR", " ".join(CLEAR)).split()
+        for i, preset in enumerate(presets):
+            is_x264 = "libx264" in words
+            for size in sizes if IS_LONG or is_x264 else [sizes[(i + k) % len(sizes)]]:
+                yield ending, [*options, *(["--preset", preset] if preset else []), "--size", size, "--pad"]
+
+
+def render(corda, folder, ending, options, before=(), **environment):
+    video = pathlib.Path(folder, "out" + ending)
+    done = subprocess.run([*before, corda, "render", pathlib.Path(folder, "scene.toml"), "-q", "--force", "-o", video, *options],
+                          env=os.environ | environment, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"{ending} {' '.join(options)}: {done.stderr}")
+    return video.read_bytes()
+
+
+def unwritten_reads(corda, folder, ending, options):
+    """What valgrind says of an encoder that uses memory that nothing wrote."""
+    report = os.path.join(folder, "valgrind.xml")
+    render(corda, folder, ending, options, ["valgrind", "-q", "--xml=yes", "--xml-file=" + report])
+    for error in xml.etree.ElementTree.parse(report).getroot().iter("error"):
+        frames = [frame.findtext("obj") or "" for frame in error.find("stack").iter("frame")]
+        if error.findtext("kind").startswith("Uninit") and ENCODERS.search(frames[0]):
+            yield f"{error.findtext('what')} in {frames[0]}, {error.find('stack').findtext('frame/fn')}"
+
+
+def main():
+    corda = os.path.abspath(sys.argv[1])
+    failed = videos = 0
+    with tempfile.TemporaryDirectory() as folder:
+        pathlib.Path(folder, "scene.toml").write_text(SCENE, encoding="utf-8")
+        for ending, options in cases():
+            made = {hashlib.sha256(render(corda, folder, ending, options, MALLOC_PERTURB_=fill)).hexdigest() for fill in ("1", "85", "255")}
+            videos += 1
+            faults = [] if len(made) == 1 else [f"{len(made)} different files"]
+            if IS_LONG:
+                faults += sorted(set(unwritten_reads(corda, folder, ending, options)))
+            for fault in faults:
+                print(f"{ending} {' '.join(options)}: {fault}")
+            failed += bool(faults)
+    print(f"{videos} videos, {failed} of them with faults")
+    sys.exit(failed > 0)
+
+
+if __name__ == "__main__":
+    main()
