@@ -30,7 +30,7 @@ OF_64 = ["64x64", "65x91", "96x96"]  # which have no smaller ones
 FORMATS = [
     (".mp4 --codec libx264", OF_X264, SIZES),
     (".mp4 --codec libx264 --pix 444", OF_X264, SIZES),
-    (".mp4 --codec libx265", OF_X264, OF_64),
+    (".mp4 --codec libx265", OF_X264, ["66x66", "67x91", "96x96"]),
     (".mp4 --codec libsvtav1", ["12", "10", "8"], OF_64),
     (".webm --codec libsvtav1", ["12", "10", "8"], OF_64),
     (".webm --codec libaom-av1", ["8", "7", "6"], OF_64),

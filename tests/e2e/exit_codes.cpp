@@ -125,7 +125,8 @@ TEST_F(ExitCodes, FourWithoutUsableGl) {
 
 TEST_F(ExitCodes, FiveForAnEncoderThatFails) {
     const auto result =
-        run_corda({"render", scene_, "-o", video_, "--codec", "h264_nvenc"}, "CUDA_VISIBLE_DEVICES=");
+        run_corda({"render", scene_, "-o", video_, "--codec", "h264_nvenc", "--size", "320x180"},
+                  "CUDA_VISIBLE_DEVICES=");
     EXPECT_EQ(result.exit_code, 5) << result.err;
     EXPECT_THAT(result.err, HasSubstr("h264_nvenc"));
     EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});

@@ -250,7 +250,7 @@ TEST_F(Figures, HaveTheirSizeInPrint) {
         EXPECT_EQ(read_png(png).width(), 669);
         EXPECT_NEAR(read_png_info(png).pixels_per_inch, 200.0, 0.1);
         const std::string svg = test::read_file(folder_.file("a.svg"));
-        EXPECT_THAT(svg, HasSubstr(R"(width="85mm" height="47.7728)"));
+        EXPECT_THAT(svg, HasSubstr(R"(width="85mm" height="47.7727)"));
         const auto info = test::run_shell("pdfinfo " + test::quoted(folder_.file("a.pdf")));
         EXPECT_THAT(info.out, HasSubstr("Page size:       240.945 x 135.419 pts")) << info.out;
         EXPECT_THAT(info.out, HasSubstr("Title:           scene"));

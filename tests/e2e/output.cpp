@@ -468,7 +468,7 @@ TEST_F(Output, DoctorReportsCapabilities) {
         const char* key = context["usable"] == true ? "gl_renderer" : "reason";
         EXPECT_FALSE(context[key].get<std::string>().empty()) << context;
     }
-    ASSERT_EQ(report["encoders"].size(), 15U);  // those that Corda supports
+    ASSERT_EQ(report["encoders"].size(), 13U);  // those that Corda supports
     for (const json& encoder : report["encoders"]) {
         EXPECT_EQ(encoder["usable"] == true, encoder["reason"].get<std::string>().empty()) << encoder;
     }

@@ -28,11 +28,12 @@ size = [640, 360]
 fps = 30
 )";
 
-/// Waits until the program has a handler for SIGINT (2), the second bit in the last digit of the mask.
+/// Waits until the program has a handler for SIGINT (2), the second bit in the last digit of the mask, or has
+/// ended.
 const char* const kUntilListening =
-    "until grep -q '^SigCgt:.*[2367abef]$' /proc/$pid/status; do sleep 0.01; done; ";
-/// Waits until its one thread sleeps, in a call that waits for another program.
-const char* const kUntilAsleep = "until grep -q '^State:.S' /proc/$pid/status; do sleep 0.01; done; ";
+    "until grep -qE '^SigCgt:.*[2367abef]$|^State:.Z' /proc/$pid/status; do sleep 0.01; done; ";
+/// Waits until its one thread sleeps, in a call that waits for another program, or it has ended.
+const char* const kUntilAsleep = "until grep -q '^State:.[SZ]' /proc/$pid/status; do sleep 0.01; done; ";
 
 /// Runs `corda ARGUMENTS &`, then the shell commands `then`, and waits for its end.
 test::CommandResult run_and(const std::string& arguments, const std::string& then) {

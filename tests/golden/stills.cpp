@@ -1,7 +1,8 @@
-// Golden stills: Film and the reference renderer draw the pictures of golden/stills, and at 1920x1080 each
-// has the hash in golden/stills_1080p. A second test runs `corda golden` on the same scenes
-// (tests/CMakeLists.txt). The target update_golden_stills rewrites the pictures, CORDA_UPDATE_GOLDENS=1 the
-// hashes; look at the pictures before committing.
+// Golden stills: Film and the reference renderer draw the pictures of golden/stills (with solver and camera
+// of golden/pinned where auto chose otherwise when they were drawn), and at 1920x1080 each has the hash in
+// golden/stills_1080p. A second test runs `corda golden` on the same scenes (tests/CMakeLists.txt). The
+// target update_golden_stills rewrites the pictures, CORDA_UPDATE_GOLDENS=1 the hashes; look at the pictures
+// before committing.
 
 #include <gtest/gtest.h>
 
@@ -9,6 +10,7 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -54,10 +56,12 @@ class GoldenStill : public ::testing::TestWithParam<std::string> {};
 TEST_P(GoldenStill, IsUnchanged) {
     const std::string folder = std::string(CORDA_GOLDENS) + "/stills";
     const std::string name = test::test_name(GetParam()) + "_t0000_700000.png";
+    const std::string pinned = CORDA_GOLDENS "/pinned/" + test::test_name(GetParam()) + ".toml";
+    const std::string path = std::filesystem::exists(pinned) ? pinned : GetParam();
     std::vector<Setting> settings{"world.duration=1.0"};
-    const Scene scene = load_scene(GetParam(), settings);
+    const Scene scene = load_scene(path, settings);
     settings.push_back(fmt::format("video.size=[{},{}]", scene.golden->width_px, scene.golden->height_px));
-    Film film(load_scene(GetParam(), settings));
+    Film film(load_scene(path, settings));
     const Image drawn = film.still(kTimeSeconds, film.scene().video.shutter);
     EXPECT_THAT(drawn, corda::testing::MatchesGolden(name, {.folder = folder}));
     EXPECT_THAT(reference_of(film), corda::testing::MatchesGolden(name, {.folder = folder}));

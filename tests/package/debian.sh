@@ -42,9 +42,8 @@ assert corda.compare(film.frame(3), '$work/still.png').equal"
     for package in "$work/packages"/*.deb; do
         name=$(dpkg-deb -f "$package" Package)
         [[ -s "$work/root/usr/share/doc/$name/copyright" ]] || { echo "$name has no copyright file"; exit 1; }
-        # Libraries that are loaded at run time, which dpkg-shlibdeps does not find.
         for library in libavcodec libavformat; do
-            loaded=$(dpkg-deb -f "$package" Depends | grep -oE "$library[0-9]+") && dpkg-query -W "$loaded" >/dev/null ||
+            loaded=$(dpkg-deb -f "$package" Depends | grep -oE "$library([0-9]+|-dev)") && dpkg-query -W "$loaded" >/dev/null ||
                 { echo "$name does not depend on an installed $library"; exit 1; }
         done
     done

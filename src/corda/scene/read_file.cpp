@@ -40,7 +40,7 @@ std::string read_file(const std::string& path, std::string_view what) {
     while (true) {
         errno = 0;
         const std::size_t count = std::fread(block.data(), 1, block.size(), file.get());
-        if (count == 0 && std::ferror(file.get()) != 0) fail_io(name, what, errno);
+        if (std::ferror(file.get()) != 0) fail_io(name, what, errno);  // also after a part: a signal came
         if (count == 0) return text;
         text.append(block.data(), count);
         check_file_bytes(name, text.size());

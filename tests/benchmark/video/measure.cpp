@@ -187,7 +187,9 @@ json in_child(const std::function<json()>& work) {
     ::close(ends[0]);
     int status = 0;
     ::waitpid(child, &status, 0);
-    if (status != 0) throw Error(ExitCode::kTemporary, "the process that measures has failed");
+    if (status != 0)
+        throw Error(WIFEXITED(status) ? static_cast<ExitCode>(WEXITSTATUS(status)) : ExitCode::kTemporary,
+                    "the process that measures has failed");
     return json::parse(text);
 }
 
