@@ -26,6 +26,7 @@ make_outputs() {
     shift
     mkdir -p "$to"/{same/csv,same/png,sound}
     "$@" golden tests/golden/scenes --dir tests/golden/stills --set world.duration=1.0 -q
+    "$@" golden tests/golden/pinned --dir tests/golden/pinned --set world.duration=1.0 -q
     for scene in tests/golden/scenes/*.toml; do
         "$@" simulate "$scene" --set world.duration=0.5 -o "$to/same/csv/$(basename "$scene" .toml).csv" -q
     done

@@ -1,5 +1,5 @@
-// Golden stills: Film and the reference renderer draw the pictures of golden/stills (with solver and camera
-// of golden/pinned where auto chose otherwise when they were drawn), and at 1920x1080 each has the hash in
+// Golden stills: Film and the reference renderer draw the pictures of golden/stills, and of
+// golden/pinned those that another solver or camera drew than auto chooses now; at 1920x1080 each has the hash in
 // golden/stills_1080p. A second test runs `corda golden` on the same scenes (tests/CMakeLists.txt). The
 // target update_golden_stills rewrites the pictures, CORDA_UPDATE_GOLDENS=1 the hashes; look at the pictures
 // before committing.
@@ -54,10 +54,11 @@ std::string hash_of(const Image& image) {
 class GoldenStill : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(GoldenStill, IsUnchanged) {
-    const std::string folder = std::string(CORDA_GOLDENS) + "/stills";
-    const std::string name = test::test_name(GetParam()) + "_t0000_700000.png";
     const std::string pinned = CORDA_GOLDENS "/pinned/" + test::test_name(GetParam()) + ".toml";
-    const std::string path = std::filesystem::exists(pinned) ? pinned : GetParam();
+    const bool is_pinned = std::filesystem::exists(pinned);
+    const std::string path = is_pinned ? pinned : GetParam();
+    const std::string folder = std::string(CORDA_GOLDENS) + (is_pinned ? "/pinned" : "/stills");
+    const std::string name = test::test_name(GetParam()) + "_t0000_700000.png";
     std::vector<Setting> settings{"world.duration=1.0"};
     const Scene scene = load_scene(path, settings);
     settings.push_back(fmt::format("video.size=[{},{}]", scene.golden->width_px, scene.golden->height_px));
