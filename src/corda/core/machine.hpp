@@ -1,12 +1,8 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
 
 namespace corda {
-
-/// Bytes of address space that this process has; 0 if Linux does not report them.
-[[nodiscard]] std::uint64_t address_space_bytes();
 
 /// How many cores the calling thread may run on (taskset, a container's set of cores), at least 1.
 [[nodiscard]] int usable_cores();
