@@ -227,7 +227,7 @@ TEST_F(RenderVideo, LeavesNothingButPicturesOfAMotionThatDiverges) {
             def.force = true;
             EXPECT_EQ(code_of([&] { render_video(diverging, file(name), def); }), ExitCode::kDiverged);
             for (const std::string& left : folder_.files())
-                EXPECT_THAT(left, AnyOf("0.png", "1.png")) << name;
+                EXPECT_THAT(left, testing::AnyOf("0.png", "1.png")) << name;
         }
     }
 }
