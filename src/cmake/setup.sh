@@ -60,6 +60,7 @@ if [[ "${1:-build}" != build ]]; then
         mandoc              # checks the manual page
         zsh                 # checks its completion
         fish                # the same
+        chromium            # shows pages with scripts, and plays videos
     )
 fi
 if [[ "${1:-build}" == long ]]; then
@@ -70,7 +71,6 @@ if [[ "${1:-build}" == long ]]; then
         jupyter-nbconvert   # runs the example notebook
         python3-ipykernel   # the kernel of the notebook
         valgrind            # memory that an encoder reads and nothing wrote
-        chromium            # plays videos, and shows pages with scripts
         parallel            # runs the tasks of a sweep or a film: examples/cluster
         python3-distributed # the same on Dask
         mmdebstrap          # new Debian systems to build and install in

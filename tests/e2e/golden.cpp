@@ -251,7 +251,7 @@ TEST_F(GoldenSuite, DrawsOneSceneOnSeveralThreads) {
 
 TEST_F(GoldenSuite, FailsForAnEmptyPictureEvenInAnUpdate) {
     for (const char* const option : {"--json", "--update"}) {
-        const auto result = run({option, "--set", "camera.center=[100,100]"});
+        const auto result = run({option, "--set", "camera={center=[100,100],height=1.0}"});
         EXPECT_EQ(result.exit_code, 7);
         EXPECT_THAT(result.out, HasSubstr("empty"));
     }
@@ -336,8 +336,8 @@ TEST_F(GoldenSuite, ShowsFailuresOnOnePage) {
     const auto result = run({"--html", folder_.file("page.html"), "--set", "style.rope_width_px=9"});
     EXPECT_EQ(result.exit_code, 7);
     const std::string page = test::read_file(folder_.file("page.html"));
-    EXPECT_THAT(page, AllOf(HasSubstr("same positions and camera, but style.rope_width_px is 9"),
-                            Not(HasSubstr("http")), Not(HasSubstr("src=\"/"))));
+    EXPECT_THAT(page, AllOf(HasSubstr("style.rope_width_px is 9 and was not given"), Not(HasSubstr("http")),
+                            Not(HasSubstr("src=\"/"))));
     const std::string visited = folder_.write("visited.html", page + kVisitor);
     const auto shown =
         test::run_shell("chromium --headless --no-sandbox --disable-gpu --user-data-dir=" +

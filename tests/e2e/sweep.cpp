@@ -107,8 +107,12 @@ class SweepPictures : public Sweep {
             std::string name = output;
             name.replace(name.find("KEY"), 3, key);
             std::vector<std::string> render{"render", scene_, "-o", file(name)};
-            for (const auto& [parameter, value] : info.at("parameters").items())
-                render.insert(render.end(), {"--set", parameter + "=" + value.dump()});
+            for (const auto& [parameter, value] : info.at("parameters").items()) {
+                std::string text = value.dump();
+                if (const auto comma = text.find(','); comma != std::string::npos)
+                    text.insert(comma + 1, " ");
+                render.insert(render.end(), {"--set", parameter + "=" + text});  // as metadata.csv has it
+            }
             const auto rendered = run_corda(render);
             ASSERT_EQ(rendered.exit_code, 0) << rendered.err;
         }
@@ -289,10 +293,8 @@ TEST_F(Sweep, AFolderOfAnotherSweepIsRefusedNamingTheDifference) {
     const auto refused = [&](const std::string& difference) {
         const auto result = sweep("out");
         EXPECT_EQ(result.exit_code, 2);
-        EXPECT_THAT(result.err, AllOf(HasSubstr("manifest.json' is of another sweep: " + difference +
-                                                "; choose another "
-                                                "folder"),
-                                      HasSubstr("--force")));
+        EXPECT_THAT(result.err, AllOf(HasSubstr("manifest.json' is of another sweep: " + difference),
+                                      HasSubstr("; choose another folder"), HasSubstr("--force")));
         EXPECT_EQ(sums("out"), whole);
     };
     define("samples = 4\nshard_samples = 2\nseed = 8", kVaried, kQuick);

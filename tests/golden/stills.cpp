@@ -1,8 +1,8 @@
 // Golden stills: Film and the reference renderer draw the pictures of golden/stills, and of
-// golden/pinned those that another solver or camera drew than auto chooses now; at 1920x1080 each has the hash in
-// golden/stills_1080p. A second test runs `corda golden` on the same scenes (tests/CMakeLists.txt). The
-// target update_golden_stills rewrites the pictures, CORDA_UPDATE_GOLDENS=1 the hashes; look at the pictures
-// before committing.
+// golden/pinned those that another solver or camera drew than auto chooses now; at 1920x1080 each has the
+// hash in golden/stills_1080p. A second test runs `corda golden` on the same scenes (tests/CMakeLists.txt).
+// The target update_golden_stills rewrites the pictures, CORDA_UPDATE_GOLDENS=1 the hashes; look at the
+// pictures before committing.
 
 #include <gtest/gtest.h>
 

@@ -93,8 +93,7 @@ std::string split_of(const SweepDef& sweep, std::int64_t sample) {
 std::vector<Setting> settings_of(const Parameters& parameters) {
     std::vector<Setting> settings;
     for (const auto& [key, value] : parameters) settings.push_back(fmt::format("{}={}", key, toml_of(value)));
-    std::ranges::sort(
-        settings);  // no two overlap; in the order of the sample's JSON, which a render of it takes
+    std::ranges::sort(settings);  // as in the JSON of the sample; no two overlap
     return settings;
 }
 
