@@ -91,7 +91,7 @@ std::string size_setting(const std::string& text) {
         throw_usage("--size {}: is not WIDTHxHEIGHT; write e.g. 1920x1080, 4k, 1080p, square or portrait",
                     text);
     }
-    return fmt::format("video.size=[{},{}]", width, height);
+    return fmt::format("video.size=[{}, {}]", width, height);
 }
 
 std::vector<std::string> command_names(const CLI::App& app) {

@@ -66,7 +66,7 @@ Case make_case(const std::string& path, const SuiteDef& def, std::set<std::strin
     if (!made.scene.golden) return made;
     made.mask = mask_of(path, *made.scene.golden);
     made.settings.push_back(
-        fmt::format("video.size=[{},{}]", made.scene.golden->width_px, made.scene.golden->height_px));
+        fmt::format("video.size=[{}, {}]", made.scene.golden->width_px, made.scene.golden->height_px));
     for (const double at_s : made.scene.golden->at_s) {
         const auto within_s = time_within(at_s, made.scene.world.duration_s);
         if (!within_s)
