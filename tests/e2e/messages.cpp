@@ -123,7 +123,7 @@ render SCENE --preset slow --codec av1 -o DIR/a.mp4 --dry-run | 2 | unknown to l
 render SCENE --fps 60 -o DIR/a.gif --dry-run | 2 | use 50 (--fps 50) | --fps 60 => --fps 50
 render SCENE --fps 1/1000 --duration 2000 -o DIR/a.gif --dry-run | 2 | use 20/13107 (--fps 20/13107) | --fps 1/1000 => --fps 20/13107
 render SCENE --pix 420 -o DIR/a.mkv --dry-run | 2 | use rgba, another codec, or leave it out | --pix 420 => --pix rgba ; --pix 420 =>
-render SCENE --codec vp9 -o DIR/a.mp4 --dry-run | 2 | use libx264, libsvtav1, libx265, libaom-av1, h264_nvenc | vp9 => libx264 ; vp9 => libsvtav1 ; vp9 => libx265
+render SCENE --size 66x66 --codec vp9 -o DIR/a.mp4 --dry-run | 2 | use libx264, libsvtav1, libx265, libaom-av1, h264_nvenc | vp9 => libx264 ; vp9 => libsvtav1 ; vp9 => libx265
 render SCENE {--codec,--pix} {x,5} -o DIR/a.mp4 | 2 | give one of
 render SCENE --codec av1 --size 32x32 -o DIR/a.mp4 --dry-run | 2 | use sides of 64 or more | 32x32 => 64x64
 render SCENE --set style.background=transparent -o DIR/x.mp4 | 2 | style.background: "#00000000" is transparent, and H.264 in MP4 cannot be; give an opaque colour (--set style.background=#ffffff), draw stills as .png, or a video as .webm, .mov, .mkv, .gif | =transparent => =#ffffff ; render SCENE => still SCENE --at 0 & x.mp4 => x.png ; x.mp4 => x.webm ; x.mp4 => x.mov ; x.mp4 => x.mkv ; x.mp4 => x.gif & SCENE => SCENE --fps 50
