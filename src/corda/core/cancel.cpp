@@ -1,6 +1,7 @@
 #include "corda/core/cancel.hpp"
 
 #include <cassert>
+#include <exception>
 #include <utility>
 
 namespace corda {
@@ -48,7 +49,8 @@ void CancelScope::ask(const CancelScope* scope) {
 
 void check_cancelled() {
     detail::work_since_check = 0;
-    if (innermost == nullptr) return;
+    // A destructor that works while another error ends the work must not throw.
+    if (innermost == nullptr || std::uncaught_exceptions() > 0) return;
     const Callback callback;
     CancelScope::ask(callback.asked());
 }
