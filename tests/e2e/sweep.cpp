@@ -125,7 +125,6 @@ class SweepPictures : public Sweep {
 
     const std::vector<std::string> keys_{"000000", "000001"};
 };
-
 TEST_F(SweepPictures, ClipsEqualRenders) {
     const std::string automatic =
         "schema = 1\n[world]\nduration = 0.5\n[[rope]]\nhang = { links = 3, length = 1.0, "
