@@ -212,10 +212,6 @@ std::string Format::words() const {
     return fmt::format("{} in {}", codec->standard, ending->words);
 }
 
-std::string Format::encoder_name() const {
-    return codec->name;
-}
-
 std::string Format::library_versions() const {
     const auto text = [](const char* name, unsigned version) {
         return fmt::format("{} {}.{}.{}", name, AV_VERSION_MAJOR(version), AV_VERSION_MINOR(version),

@@ -88,8 +88,6 @@ struct Format {
     [[nodiscard]] int crf_of(const EncoderDef& def) const;
     /// "H.264 in MP4", "GIF".
     [[nodiscard]] std::string words() const;
-    /// The encoder: "libx264", "gif".
-    [[nodiscard]] std::string encoder_name() const;
     /// The versions of libavformat and of libx264 or libavcodec: "libx264 164, libavformat 59.27.100".
     /// libavcodec does not tell those of the encoders behind it.
     [[nodiscard]] std::string library_versions() const;
