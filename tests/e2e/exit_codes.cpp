@@ -260,9 +260,10 @@ TEST_F(ExitCodes, OneHundredFortyThreeWhenTerminatedWhilePlanning) {
         "net.toml",
         "schema = 1\n[[net]]\ngrid = { columns = 80, rows = 60, spacing = 0.1, diagonals = false }\n"
         "pinned = [[0, 0]]\n");
-    const auto result = run_shell(test::quoted(CORDA_PROGRAM) + " render " + net + " -o " + video_ +
-                                  " & pid=$!; until grep -q '^SigCgt:.*[2367abef]$' /proc/$pid/status; do "
-                                  "sleep 0.01; done; kill -TERM $pid; wait $pid");
+    const auto result =
+        run_shell(test::quoted(CORDA_PROGRAM) + " render " + net + " -o " + video_ +
+                  " & pid=$!; while kill -0 $pid 2>/dev/null && ! grep -q '^SigCgt:.*[2367abef]$' "
+                  "/proc/$pid/status; do sleep 0.01; done; kill -TERM $pid; wait $pid");
     EXPECT_EQ(result.exit_code, 143) << result.err;
     EXPECT_THAT(result.err, HasSubstr("interrupted; nothing was written"));
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"net.toml", "scene.toml"}));

@@ -28,12 +28,16 @@ size = [640, 360]
 fps = 30
 )";
 
-/// Waits until the program has a handler for SIGINT (2), the second bit in the last digit of the mask, or has
-/// ended.
-const char* const kUntilListening =
-    "until grep -qE '^SigCgt:.*[2367abef]$|^State:.Z' /proc/$pid/status; do sleep 0.01; done; ";
-/// Waits until its one thread sleeps, in a call that waits for another program, or it has ended.
-const char* const kUntilAsleep = "until grep -q '^State:.[SZ]' /proc/$pid/status; do sleep 0.01; done; ";
+/// Shell commands that wait until `condition` holds or the program has ended. bash may have reaped it by
+/// then, and another process may take its number: so it is asked each time whether it is there.
+std::string until(const std::string& condition) {
+    return "while kill -0 $pid 2>/dev/null && ! " + condition + "; do sleep 0.01; done; ";
+}
+
+/// Waits until the program has a handler for SIGINT (2), the second bit in the last digit of the mask.
+const std::string kUntilListening = until("grep -q '^SigCgt:.*[2367abef]$' /proc/$pid/status");
+/// Waits until its one thread sleeps, in a call that waits for another program.
+const std::string kUntilAsleep = until("grep -q '^State:.S' /proc/$pid/status");
 
 /// Runs `corda ARGUMENTS &`, then the shell commands `then`, and waits for its end.
 test::CommandResult run_and(const std::string& arguments, const std::string& then) {
@@ -97,7 +101,7 @@ TEST_F(Signals, EndARenderAndLeaveNothing) {
         const std::string video = folder_.file(name);
         test::write_file(video, "precious");
         const auto end = run_and("render --force " + scene_ + " -o " + video,
-                                 "until ls " + video + ".*.tmp; do sleep 0.01; done; kill -TERM $pid; ");
+                                 until("ls " + video + ".*.tmp") + "kill -TERM $pid; ");
         EXPECT_EQ(end.exit_code, 143) << end.err;
         EXPECT_THAT(end.err, HasSubstr("interrupted; " + video + " was not written"));
         EXPECT_EQ(test::read_file(video), "precious");
@@ -109,8 +113,7 @@ TEST_F(Signals, EndARenderAndLeaveNothing) {
 TEST_F(Signals, EndASequenceOfPicturesThatResumeContinues) {
     const std::string frames = folder_.file("frames");
     const std::string render = "render " + scene_ + " -o " + frames + "/%04d.png";
-    const auto end =
-        run_and(render, "until test -e " + frames + "/0005.png; do sleep 0.01; done; kill -INT $pid; ");
+    const auto end = run_and(render, until("test -e " + frames + "/0005.png") + "kill -INT $pid; ");
     EXPECT_EQ(end.exit_code, 130) << end.err;
     EXPECT_THAT(end.err, HasSubstr("frames are in " + frames + "/%04d.png (--resume draws the others)"));
     const std::string program = test::quoted(CORDA_PROGRAM) + " ";
@@ -126,7 +129,7 @@ TEST_F(Signals, EndASequenceOfPicturesThatResumeContinues) {
 TEST_F(Signals, KeepTheRowsOfATable) {
     const std::string table = folder_.file("a.csv");
     const auto end = run_and("simulate " + scene_ + " --duration 30000 -o " + table,
-                             kUntilListening + std::string("kill -TERM $pid; "));
+                             kUntilListening + "kill -TERM $pid; ");
     EXPECT_EQ(end.exit_code, 143) << end.err;
     EXPECT_FALSE(std::filesystem::exists(table));
     EXPECT_THAT(end.err, testing::AnyOf(HasSubstr("a.csv.part"), HasSubstr("nothing was written")));
@@ -135,7 +138,7 @@ TEST_F(Signals, KeepTheRowsOfATable) {
 TEST_F(Signals, EndAStill) {
     // Simulating until then takes at least a second.
     const auto end = run_and("still " + scene_ + " --at 0,3e5 --duration 3e5 -o " + folder_.file("stills"),
-                             kUntilListening + std::string("kill -INT $pid; "));
+                             kUntilListening + "kill -INT $pid; ");
     EXPECT_EQ(end.exit_code, 130) << end.err;
     EXPECT_THAT(end.err, HasSubstr("interrupted; nothing was written"));
 }
@@ -147,9 +150,8 @@ TEST_F(Signals, EndASuiteWithTheNumberOfItsPictures) {
         "suite.toml", std::string(kSceneOfSignals) + "[golden]\nsize = [1920, 1080]\nat = [" + times + "]\n");
     const std::string ref = folder_.file("ref");
     // Once it draws: then a driver is loaded.
-    const auto end = run_and(
-        "golden " + suite + " --dir " + ref + " --update",
-        "until grep -qE 'swrast_dri|libgallium' /proc/$pid/maps; do sleep 0.01; done; kill -INT $pid; ");
+    const auto end = run_and("golden " + suite + " --dir " + ref + " --update",
+                             until("grep -qE 'swrast_dri|libgallium' /proc/$pid/maps") + "kill -INT $pid; ");
     EXPECT_EQ(end.exit_code, 130) << end.err;
     EXPECT_THAT(end.err,
                 testing::ContainsRegex("interrupted after [0-9]+ of 400 pictures; nothing was written"));
@@ -220,8 +222,7 @@ TEST_F(Signals, EndEveryCommandInTheMiddleOfAFrame) {
         for (const std::string& arguments :
              {"simulate " + scene, "plan " + scene, "render " + scene + " -o " + folder_.file("a.mp4"),
               "still " + scene + " --at 1 -o " + folder_.file("a.png")}) {
-            const auto end =
-                run_and(arguments, kUntilListening + std::string("sleep 0.3; kill -TERM $pid; "));
+            const auto end = run_and(arguments, kUntilListening + "sleep 0.3; kill -TERM $pid; ");
             EXPECT_EQ(end.exit_code, 143) << heavy.name << ", " << arguments << ": " << end.err;
         }
     }
