@@ -138,14 +138,14 @@ void check_standard_output(const Console& console, const std::string& output) {
                     "-o - and --json both want standard output; give the video a file name");
 }
 
-void report_rendered(const Console& console, bool is_verified, const Rendered& rendered, double wall_s) {
+void report_rendered(const Console& console, bool is_checked, const Rendered& rendered, double wall_s) {
     if (rendered.kept_frames > 0)
         console.info(fmt::format("{} were there already", counted(rendered.kept_frames, "frame")));
     if (!rendered.left_out.empty())
         console.warning(fmt::format("--from cannot repeat the output, because {}; keep the scene file",
                                     rendered.left_out));
     console.info(fmt::format("{} in {:.3g} s, {:.1f} per second{}", counted(rendered.frames, "frame"), wall_s,
-                             static_cast<double>(rendered.frames) / wall_s, is_verified ? "; verified" : ""));
+                             static_cast<double>(rendered.frames) / wall_s, is_checked ? "; checked" : ""));
 }
 
 /// A longer film may have been there before.

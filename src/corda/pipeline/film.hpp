@@ -175,7 +175,7 @@ struct RenderDef {
     std::int64_t first = 0;
     std::optional<std::int64_t> end;  ///< one past the last frame; default Film::frame_count()
     /// Called after each frame, repeatedly while a large frame is drawn and while the finished video is
-    /// ended and verified, and with all frames at the end; returning false stops. Frames of a .gif count
+    /// ended and checked, and with all frames at the end; returning false stops. Frames of a .gif count
     /// twice: once when drawn, and once when encoded after all are drawn.
     OnProgress on_progress;
 };

@@ -35,7 +35,7 @@ struct MeasuredEncoding {
     std::optional<int> crf;  ///< empty if the codec has none
     std::string pixels;      ///< libav's name of the pixel format
     std::int64_t frames = 0;
-    double wall_s = 0.0;  ///< from the scene to the verified file
+    double wall_s = 0.0;  ///< from the scene to the checked file
     std::uintmax_t bytes = 0;
     double edge_psnr_db = 0.0;  ///< of R, G and B as a player shows them, see test::EdgeQuality
     double edge_ssim = 0.0;

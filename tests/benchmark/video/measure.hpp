@@ -32,7 +32,7 @@ struct Stage {
 /// Figures of videos of one size and preset.
 struct Measured {
     std::int64_t frames = 0;
-    report::Times render_s;        ///< from the scene to the verified file
+    report::Times render_s;        ///< from the scene to the checked file
     report::Times encoder_s;       ///< x264 alone, from memory, with a thread per core
     report::Times ratio;           ///< of each render to the encoder that ran after it
     std::int64_t pictures = 0;     ///< different ones that x264 alone encodes, there and back
