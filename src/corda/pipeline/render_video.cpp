@@ -87,10 +87,11 @@ class FrameDrawer {
 using Block = std::vector<Drawn>;
 
 /// Frames that a thread draws one after the other: as many as keep all that are drawn ahead in a bounded
-/// memory. No byte depends on it.
+/// memory. The first of a block costs more: its thread draws all that changed since its last block, and the
+/// encoder compares the whole picture. No byte depends on it.
 std::int64_t block_length(const VideoDef& video, int jobs) {
     constexpr std::int64_t kMaxFrames = 8;
-    constexpr std::int64_t kMaxBytes = 64 << 20;
+    constexpr std::int64_t kMaxBytes = 128 << 20;
     const std::int64_t ahead = 4 * std::int64_t{2 * jobs} * video.width_px * video.height_px;
     return std::clamp<std::int64_t>(kMaxBytes / ahead, 1, kMaxFrames);
 }
