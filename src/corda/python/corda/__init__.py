@@ -2,7 +2,7 @@
 
     import corda
     film = corda.Film("swing.toml", size=(640, 360))
-    film.frame(30)            # numpy uint8 (height, width, 4), row 0 on top
+    film.frame(30)            # numpy uint8 (height, width, 4), row 0 on top; film[30], film[-1], film[0:10]
     film.positions            # float64 (frames, particles, 2), metres, y up
     film.save("swing.mp4")
 
@@ -23,14 +23,30 @@ import math as _math
 import numbers as _numbers
 import operator as _operator
 import os as _os
+import pathlib as _pathlib
+import sys as _sys
 import tempfile as _tempfile
 import warnings as _warnings
 from typing import NamedTuple as _NamedTuple
 
 import numpy as _np
 
+
+def _built_for():
+    """The versions of Python that the C++ halves beside this file are built for, such as "3.11"."""
+    tags = [path.name.split("-")[1] for path in _pathlib.Path(__file__).parent.glob("_corda.cpython-*.so")]
+    return sorted(f"{tag[0]}.{tag[1:]}" for tag in tags)
+
+
+try:
+    from . import _corda
+except ImportError:
+    _versions, _this = _built_for(), "%d.%d" % _sys.version_info[:2]
+    if not _versions or _this in _versions:
+        raise
+    raise ImportError(f"the module corda is built for {', '.join(_versions)}, this is {_this}; run python{_versions[-1]}, or build "
+                      "Corda with this Python") from None
 from ._corda import Error, __version__
-from . import _corda
 
 __all__ = ["Difference", "Error", "Film", "__version__", "compare", "read_png", "sweep", "write_png"]
 
@@ -178,10 +194,12 @@ def _index(value, name):
 
 
 def _frame_index(value, film):
+    """The number of a frame, counted from the end if it is negative, as in a list."""
     k = _index(value, "k")
-    if not -2**63 <= k < 2**63:
-        raise _error(f"frame {k} is not within 0 .. {len(film)}")
-    return k
+    count = len(film)
+    if not -count <= k < count:
+        raise IndexError(f"frame {k} is not within 0 .. {count - 1}, nor within -{count} .. -1 from the end")
+    return k % count
 
 
 def _answering(on_progress):
@@ -199,7 +217,8 @@ def _answering(on_progress):
 
 
 class Film:
-    """A scene as pictures: planned and simulated once, then drawn in any order.
+    """A scene as pictures: planned and simulated once, then drawn in any order. A sequence of its frames, in the order of
+    time: len(film), film[k], film[-1], film[0:10], for frame in film.
 
     path: a scene file; or `text`, the scene itself as TOML. Other keywords set keys of the scene, like --set of the program:
     size=(width, height), fps, duration, crf, preset, codec and jobs by these names, other keys by their own name with two
@@ -232,6 +251,16 @@ class Film:
         """Number of frames of the scene's video."""
         return self._film.frame_count()
 
+    def __getitem__(self, k):
+        """film[k]: the same as frame(k). film[first:end:step]: a list of frames."""
+        if isinstance(k, slice):
+            return [self.frame(i) for i in range(*k.indices(len(self)))]
+        return self.frame(k)
+
+    def __iter__(self):
+        """All frames, drawn one after the other."""
+        return map(self.frame, range(len(self)))
+
     def __repr__(self):
         width, height = self.size
         return f"<corda.Film of {len(self)} frames, {width}x{height} at {self.fps:g} per second>"
@@ -248,11 +277,13 @@ class Film:
         return numerator / denominator
 
     def frame(self, k):
-        """Frame `k`, 0 <= k < len(film), or the frame at the end of the motion, as numpy uint8 of shape (height, width, 4)."""
+        """Frame `k`, -len(film) <= k < len(film), negative ones counted from the end, as numpy uint8 of shape (height, width,
+        4). Raises IndexError for other numbers, TypeError for what is no integer."""
         return self._film.frame(_frame_index(k, self))
 
     def still(self, time, shutter=0.0):
-        """The picture at a time in seconds, 0 .. duration, like frame(); `shutter`, 0 .. 1, blurs it like video.shutter."""
+        """The picture at a time in seconds, 0 .. duration, like frame(); `shutter`, 0 .. 1, blurs it like video.shutter.
+        Raises Error (code 2) for other values."""
         return self._film.still(_float(time, "time"), _float(shutter, "shutter"))
 
     @property
