@@ -21,9 +21,9 @@ install(TARGETS corda_library EXPORT corda_targets
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
 install(TARGETS corda RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 # The README and its pages for users, at the same relative places.
-foreach(page LICENSE README.md src/CHANGELOG.md src/cmake/LICENSES.md src/corda/study/speed.png src/corda/study/horizons.png
-        src/corda/study/challenge_three.png src/corda/study/challenge_masses.png src/corda/study/challenge_ten.png src/corda/study/challenge_forty.png
-        src/corda/app/README.md src/corda/golden/README.md src/corda/media/README.md src/corda/python/README.md src/corda/scene/README.md src/corda/study/README.md
+file(GLOB pictures RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests/benchmark/*.png)
+foreach(page LICENSE README.md src/CHANGELOG.md src/cmake/LICENSES.md tests/benchmark/README.md ${pictures}
+        src/corda/app/README.md src/corda/golden/README.md src/corda/media/README.md src/corda/python/README.md src/corda/scene/README.md
         src/corda/serve/README.md src/corda/sweep/README.md)
     cmake_path(GET page PARENT_PATH folder)
     install(FILES ${PROJECT_SOURCE_DIR}/${page} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT program)

@@ -57,6 +57,7 @@ if [[ "${1:-build}" != build ]]; then
         python3-pytest      # the tests of the Python module
         python3-pytest-xdist  # user tests in several processes that draw
         python3-jsonschema  # a second opinion on the JSON Schema of scenes
+        python3-matplotlib  # plots of the study
         mandoc              # checks the manual page
         zsh                 # checks its completion
         fish                # the same
@@ -101,7 +102,6 @@ if [[ "${1:-build}" == peers ]]; then
         libdart-dev         # DART
         libsundials-dev     # CVODE and IDA
         libboost-dev        # Boost.odeint
-        python3-matplotlib  # plots with many labelled lines
     )
 fi
 

@@ -1,9 +1,10 @@
 // The cases of section 4 of src/corda/sim/README.md: every method stays within its bound, and the estimates
-// of auto are true. The cases, the bounds and the measured errors are in src/corda/study/accuracy_*.cpp.
+// of auto are true. The cases, the bounds and the measured errors are in
+// tests/benchmark/study/accuracy_*.cpp.
 
 #include <gtest/gtest.h>
 
-#include "corda/study/accuracy.hpp"
+#include "benchmark/study/accuracy.hpp"
 
 namespace corda::study {
 namespace {

@@ -5,14 +5,14 @@
 #        tests/benchmark/run.sh draw [--json] [GOOGLE BENCHMARK OPTIONS]
 #        tests/benchmark/run.sh sweep [--json] [GOOGLE BENCHMARK OPTIONS]
 #        tests/benchmark/run.sh long [PERIODS]
-#        tests/benchmark/run.sh study -o FOLDER [--chapter challenge,horizons] [--scenes N] [--repeats N]
+#        tests/benchmark/run.sh study [CHAPTER ...] [--scene SCENE] [--quick] [-o FOLDER]
 #        tests/benchmark/run.sh startup [--json] [--repeats N] [--beside PROGRAM]
 #   video  renders beside x264 alone: time, stages and memory; with --encodings, presets and codecs
 #   sim    the cost of each method against the number of particles; long ropes by auto, with error and memory
 #   sweep  clips of a sweep with all labels: whole, and by stages
 #   draw   frames of examples/swing.toml in several styles
 #   long   energy and phase of a pendulum after 10 000 or PERIODS periods; a million take minutes
-#   study  the pendulum challenge and the observed horizons of src/corda/study/README.md
+#   study  the chapters of tests/benchmark/README.md: study.py
 #   startup  short commands: milliseconds of each, optionally in turns with another build of the program
 # BUILD_DIR is a build folder of the preset ci or release with tests; build/ci by default.
 set -euo pipefail
@@ -36,7 +36,7 @@ cmake --build "$build" --target corda "${programs[@]/#/benchmark_}" >&2
 
 if [[ "$kind" == startup ]]; then exec python3 tests/benchmark/startup.py "$build/corda" examples "$@"; fi
 if [[ "$kind" == long ]]; then exec "$build/tests/benchmark_long_runs" "$@"; fi
-if [[ "$kind" == study ]]; then exec "$build/tests/benchmark_study" "$@"; fi
+if [[ "$kind" == study ]]; then exec python3 tests/benchmark/study.py --program "$build/tests/benchmark_study" "$@"; fi
 if [[ "$kind" == video ]]; then exec "$build/tests/benchmark_video" "$@"; fi
 json=()
 options=()

@@ -105,6 +105,8 @@ TEST_F(Killed, WhatWasRemovedNamesWhatReplacesIt) {
               "the command \"recover\" was removed; render a long film as pictures"},
              {{"join", "a.mp4", "b.mp4", "-o", "c.mp4"},
               "the command \"join\" was removed; join videos by ffmpeg"},
+             {{"study", scene_, "-o", "a"},
+              "the command \"study\" was removed; run python3 tests/benchmark/study.py"},
              {{"render", scene_, "-o", "a.mp4", "--shard", "0/2"},
               "the option --shard was removed; give each"},
              {{"render", scene_, "-o", "a.mp4", "--verify=full"},

@@ -51,25 +51,6 @@ TEST_F(Names, AreBytesAsFilesAndEscapedElsewhere) {
               std::pair(std::string("Title"), std::string("caf\\xe9\\x1b[31m")));
 }
 
-TEST_F(Names, OfStudiesMayHaveAnyCharacters) {
-    const std::string scene = folder_.write("'x ]]> & <b> \"q\" `id` \xe9\x1b[31m.toml", kSceneOfNames);
-    const std::string out = folder_.file("report'");
-    const auto result = run_corda({"study", scene, "-o", out, "--quick", "--chapter", "speed"});
-    ASSERT_EQ(result.exit_code, 0) << result.err;
-    const std::string enter = "cd " + test::quoted(out) + " && ";
-    EXPECT_EQ(run_shell(enter + "xmllint --noout --nonet --dropdtd report.html").err, "");
-    EXPECT_EQ(run_shell(enter + "xmllint --noout --nonet *.svg").err, "");
-    EXPECT_THAT(test::read_file(out + "/report.html"),
-                HasSubstr("'x ]]&gt; &amp; &lt;b&gt; &quot;q&quot; `id` \\xe9\\x1b[31m"));
-}
-
-TEST_F(Names, OfMaximumLengthAreShortenedForTables) {
-    const std::string scene = folder_.write(std::string(250, 'a') + ".toml", kSceneOfNames);
-    const auto result =
-        run_corda({"study", scene, "-o", folder_.file("report"), "--quick", "--chapter", "speed"});
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-}
-
 TEST_F(Names, NeverReachTheTerminalRaw) {
     const std::string nasty = "\x1b[31m\x07\xc2\x9b\x9b";
     const std::string scene = folder_.write(nasty + ".toml", kSceneOfNames);
@@ -90,8 +71,6 @@ TEST_F(Names, NeverReachTheTerminalRaw) {
         {"render", scene, "-o", nasty + ".mp4", "--backend", nasty},
         {"still", scene, "--at", nasty, "-o", folder_.path()},
         {"still", scene, "--at", "0", "-o", nasty + ".eps"},
-        {"study", scene, "-o", folder_.path()},
-        {"study", "-o", folder_.file("report"), "--chapter", nasty},
         {"compare", nasty, nasty, "--max", nasty},
         {"compare", nasty, nasty}};
     for (std::vector<std::string> command : commands) {

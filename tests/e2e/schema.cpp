@@ -101,7 +101,7 @@ TEST(Completion, ParsesInItsShells) {
     }
     const std::string bash = "source " + folder.file("corda.bash") + "; COMP_WORDS=(corda ";
     EXPECT_EQ(test::run_shell(bash + "st); COMP_CWORD=1; _corda; echo ${COMPREPLY[@]}").out,
-              "still strobe study\n");
+              "still strobe\n");
     EXPECT_EQ(test::run_shell(bash + "render --cr); COMP_CWORD=2; _corda; echo ${COMPREPLY[@]}").out,
               "--crf\n");
     const std::string fish = "source " + folder.file("corda.fish") + "; complete -C 'corda still --fram'";

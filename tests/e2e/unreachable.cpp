@@ -55,7 +55,6 @@ TEST_F(Unreachable, OutputsAreNamed) {
         {{"render", scene_, "--dry-run", "-o"}, "/%04d.png"},
         {{"report", scene_, "-o"}, "/a"},
         {{"report", scene_, "--dry-run", "-o"}, "/a"},
-        {{"study", "-o"}, "/a"},
         {{"golden", scene_, "--update", "--dir"}, "/a"},
         {{"init"}, "/a.toml"},
     };

@@ -35,7 +35,7 @@ TEST_P(EveryMethod, WritesTheSameBytesFromTwoProcesses) {
 }
 
 /// Halving its distance to equilibrium again and again, a rope would reach denormal numbers, which slow a
-/// step down a hundred times. What the steps cost is measured by `corda study`, among the hard cases.
+/// step down a hundred times. What the steps cost is measured by `tests/benchmark/study.py hard_cases`.
 TEST_P(EveryMethod, NeverWorksOnDenormalNumbersWhileAMotionDiesDown) {
     const RopeDef rope = reference::straight_rope(20, 1.0, 45.0);
     const WorldDef world{{0.0, -9.81}, 2000.0, 5.0};

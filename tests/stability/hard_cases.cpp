@@ -1,14 +1,14 @@
 // The hard cases of section 5 of src/corda/sim/README.md and tests of bits and denormal numbers. The cases,
-// their bounds and measured values are in src/corda/study/hard_*.cpp. CORDA_TEST_LONG=1 also runs the long
-// ones.
+// their bounds and measured values are in tests/benchmark/study/hard_*.cpp. CORDA_TEST_LONG=1 also runs the
+// long ones.
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <limits>
 
+#include "benchmark/study/hard_cases.hpp"
 #include "corda/reference/ropes.hpp"
-#include "corda/study/hard_cases.hpp"
 #include "stability/denormal_trap.hpp"
 #include "support/solver_run.hpp"
 

@@ -26,14 +26,13 @@ using Action = std::function<ExitCode(const Console&)>;
 /// Adds one subcommand to `app`; parsing it sets `action`.
 using AddCommand = void(CLI::App& app, Action& action);
 AddCommand add_render, add_still, add_strobe, add_sheet, add_simulate, add_compare, add_golden, add_sweep,
-    add_watch, add_doctor, add_plan, add_report, add_study, add_init, add_examples, add_schema,
-    add_completion, add_help;
+    add_watch, add_doctor, add_plan, add_report, add_init, add_examples, add_schema, add_completion, add_help;
 
 /// The subcommands in the order of `corda --help`.
-inline constexpr AddCommand* kCommands[] = {add_render,  add_still,      add_strobe, add_sheet, add_simulate,
-                                            add_compare, add_golden,     add_sweep,  add_watch, add_doctor,
-                                            add_plan,    add_report,     add_study,  add_init,  add_examples,
-                                            add_schema,  add_completion, add_help};
+inline constexpr AddCommand* kCommands[] = {
+    add_render, add_still,    add_strobe, add_sheet,      add_simulate, add_compare,
+    add_golden, add_sweep,    add_watch,  add_doctor,     add_plan,     add_report,
+    add_init,   add_examples, add_schema, add_completion, add_help};
 
 /// A subcommand and the values of its options, which live as long as the program.
 template <class Options>
@@ -77,9 +76,7 @@ struct SceneOptions {
     std::string path;
     std::vector<Setting> settings;
 
-    /// Whether a command can do without a scene.
-    enum class Need { kRequired, kOptional };
-    void add_to(CLI::App& command, Need need = Need::kRequired);
+    void add_to(CLI::App& command);
     /// Makes `--name VALUE` stand for `--set key=VALUE`.
     void add_shortcut(CLI::App& command, const std::string& name, const std::string& key,
                       const std::string& help);

@@ -124,9 +124,8 @@ CLI::Validator within(double low, double high) {
     return {check, range};
 }
 
-void SceneOptions::add_to(CLI::App& command, Need need) {
-    command.add_option("SCENE", path, "scene file (TOML), or - for standard input")
-        ->required(need == Need::kRequired);
+void SceneOptions::add_to(CLI::App& command) {
+    command.add_option("SCENE", path, "scene file (TOML), or - for standard input")->required();
     // One value per flag: a value may have commas and brackets of its own.
     command.add_option("--set", settings, "override a key of the scene, e.g. rope[0].mass=2")
         ->type_name("KEY=VALUE")

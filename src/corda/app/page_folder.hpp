@@ -11,7 +11,7 @@
 
 namespace corda::app {
 
-// The folder that `study` and `report` write a page with its figures into.
+// The folder that `report` writes a page with its figures into.
 
 /// Its `--force`.
 void add_force(CLI::App& command, bool& force);

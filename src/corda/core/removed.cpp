@@ -9,6 +9,7 @@ namespace {
 // Sorted by kind: commands, options, keys.
 constexpr std::array kRemoved{
     Removed{"recover", "render a long film as pictures (-o frames/%06d.png), which --resume continues"},
+    Removed{"study", "run python3 tests/benchmark/study.py in Corda's sources"},
     Removed{"verify", "render checks each video before it gets its name; ffprobe tells about any video"},
     Removed{"join", "join videos by ffmpeg's demuxer concat"},
     Removed{"--verify", "render checks each video before it gets its name"},

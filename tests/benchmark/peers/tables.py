@@ -1,27 +1,15 @@
-#!/usr/bin/env python3
-"""Writes the plots and tables of section "Peers" of src/corda/study/README.md, and the rows of README.md, from runs.csv.
-
-Usage: tables.py RUNS_CSV (tests/benchmark/peers.sh makes it)
+"""The plots and tables of the peers, and the rows of README.md, from runs.csv, which tests/benchmark/peers.sh makes.
 
 The time of a method at an error is read from the line between its two neighbouring runs in logarithms; the cheapest run
 stands for looser errors. A peer's time is that of its best method.
 """
 import csv
-import io
 import math
-import pathlib
-import platform
-import re
-import sys
 
-import matplotlib
+from matplotlib.figure import Figure
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-from PIL import Image  # noqa: E402
+from page import Chapter, Part, Picture, processor
 
-ROOT = pathlib.Path(__file__).resolve().parents[3]
-STUDY = ROOT / "src" / "study"
 GOALS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-9)
 # They know no mechanics: the equations of motion that they integrate are those of equations.hpp.
 SOLVERS = ("SUNDIALS", "Boost.odeint")
@@ -158,7 +146,9 @@ def ratio_table(found, head):
 
 
 def plot(problem, peers, names):
-    figure, axes = plt.subplots(figsize=(9, 5.6))
+    """A figure with one line per peer."""
+    figure = Figure(figsize=(9, 5.6))
+    axes = figure.subplots()
     labels = []
     for peer, methods in sorted(peers.items(), key=lambda item: item[0] == "Corda"):
         # One line per peer, of the runs that none of its others beats.
@@ -186,27 +176,7 @@ def plot(problem, peers, names):
         axes.annotate(peer, (error, ms), (1.03, (height - low) / (high - low)), textcoords="axes fraction",
                       color=colour, va="center", fontsize=9,
                       arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.5, "alpha": 0.6})
-    picture = io.BytesIO()
-    figure.savefig(picture, dpi=80, bbox_inches="tight")
-    plt.close(figure)
-    with Image.open(picture) as image:  # fewer colours take a third of the bytes
-        image.convert("RGB").quantize(96).save(STUDY / f"peers_{problem}.png", optimize=True)
-
-
-def put(path, title, text):
-    """Replaces the text between two marks of a page."""
-    page = path.read_text(encoding="utf-8")
-    marked = re.compile(rf"(<!-- begin of {title} -->\n).*?(\n<!-- end of {title} -->)", re.DOTALL)
-    page, count = marked.subn(lambda found: f"{found[1]}\n{text}\n{found[2]}", page)
-    if count != 1:
-        sys.exit(f'tables.py: {path} has no part "{title}"')
-    path.write_text(page, encoding="utf-8")
-
-
-def processor():
-    with open("/proc/cpuinfo", encoding="utf-8") as file:
-        names = [line.split(":")[1].strip() for line in file if line.startswith("model name")]
-    return names[0] if names else platform.machine()
+    return figure
 
 
 def readme_rows(found, engines):
@@ -222,23 +192,20 @@ def readme_rows(found, engines):
     return "\n".join(lines)
 
 
-def main():
-    if len(sys.argv) != 2:
-        sys.exit("usage: tables.py RUNS_CSV")
-    runs = read_runs(sys.argv[1])
+def peers(path):
+    """The chapter of the runs in a file."""
+    runs = read_runs(path)
     found, engines = winners(runs), winners(runs, SOLVERS)
     names = sorted({peer for peers in runs.values() for peer in peers} - {"Corda"})
+    pictures = []
     parts = [f"Processor: {processor()}, one thread.",
              ratio_table(engines, "time of the best engine or published method, over Corda's"),
              ratio_table(found, "the same, of all peers")]
     for problem, title in PROBLEMS.items():
-        plot(problem, runs[problem], names)
+        pictures.append(Picture(f"peers_{problem}.png", plot(problem, runs[problem], names), "Time against error of every peer"))
         absent = [name for name in names if name not in runs[problem]]
         parts.append(f"### {title}\n\n![Time against error of every peer](peers_{problem}.png)\n\n"
                      + problem_table(runs[problem])
                      + (f"\n\nWithout a formulation of this problem: {', '.join(absent)}." if absent else ""))
-    put(STUDY / "README.md", "Peers", "\n\n".join(parts))
-    put(ROOT / "README.md", "Peers", readme_rows(found, engines))
-
-
-main()
+    return Chapter("Peers", [Part("peers", "", "\n\n".join(parts)),
+                             Part("peers_rows", "", readme_rows(found, engines))], pictures)

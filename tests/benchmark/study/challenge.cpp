@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <fstream>
 #include <functional>
 #include <limits>
 
@@ -16,11 +15,18 @@
 #include "corda/sim/solver.hpp"
 #include "support/extended_motion.hpp"
 
-namespace corda::benchmark {
+namespace corda::study {
 namespace {
+
+using nlohmann::json;
 
 constexpr int kFramesPerSecond = 60;
 constexpr int kEnergyFrames = 60 * kFramesPerSecond;
+
+/// Of each timed run.
+int repeats_of(const Options& options) {
+    return options.quick ? 2 : 9;
+}
 
 struct Pendulum {
     std::string id;
@@ -191,110 +197,57 @@ void time_in_turns(std::vector<Run>& runs, int repeats) {
     }
 }
 
-report::Series pose_of(const Frames& frames, const std::string& name, std::size_t look) {
-    report::Series pose{.name = name, .points = {}, .look = look};
-    for (const Vec2 at : frames.back()) pose.points.emplace_back(at.x, at.y);
-    return pose;
+json points_json(const std::vector<Vec2>& points) {
+    json rows = json::array();
+    for (const Vec2 at : points) rows.push_back({at.x, at.y});
+    return rows;
 }
 
-report::Plot plot_of(const Pendulum& pendulum, const Run& xpbd, const Run& exact, const Frames& truth) {
-    report::Plot plot;
-    plot.id = "challenge_" + pendulum.id;
-    plot.title = fmt::format("{} after {:g} s", pendulum.name, pendulum.seconds);
-    plot.x_title = "x [m]";
-    plot.y_title = "y [m]";
-    plot.log_x = plot.log_y = false;
-    plot.has_equal_scales = true;
-    plot.context_name = "truth, path of the end";
-    report::Series path{.name = plot.context_name, .points = {}};
-    path.is_context = true;
-    for (const auto& frame : truth) path.points.emplace_back(frame.back().x, frame.back().y);
-    // The truth comes last, as points on the lines of the methods.
-    plot.series = {std::move(path), pose_of(xpbd.frames, "XPBD, " + xpbd.setting, 1),
-                   pose_of(exact.frames, "exact, " + exact.setting, 2), pose_of(truth, "truth", 0)};
-    plot.series.back().form = report::Series::Form::kPoints;
-    return plot;
+json run_json(const Run& run) {
+    return {{"method", run.method},
+            {"setting", run.setting},
+            {"error_m", run.error_m},
+            {"energy_error_over_mgl", run.energy_error},
+            {"strain_largest", run.strain},
+            {"us_per_frame", run.microseconds_a_frame()},
+            {"last_pose_m", points_json(run.frames.back())}};
 }
 
-/// Lines of a source file with code on them.
-int code_lines(const std::string& path) {
-    std::ifstream file(std::string(CORDA_SOURCE) + "/" + path);
-    if (!file) throw Error(ExitCode::kIo, path + ": cannot be read");
-    int lines = 0;
-    for (std::string line; std::getline(file, line);) {
-        const std::size_t begin = line.find_first_not_of(' ');
-        if (begin != std::string::npos && line.compare(begin, 2, "//") != 0) ++lines;
+json measure_pendulum(const Pendulum& pendulum, const Options& options) {
+    const Frames truth = true_frames(pendulum);
+    std::vector<Run> all;
+    for (const int substeps : {50, 500, 5000}) {
+        if (substeps <= 500 || !options.quick) all.push_back(run_xpbd(pendulum, substeps));
     }
-    return lines;
-}
-
-report::Table lines_table() {
-    report::Table table{"challenge_lines", "Simplicity: lines of code", {}, {}, {}};
-    table.columns = {{"method", "method"}, {"lines", "lines"}, {"what", "of which files"}};
-    table.add(
-        {"XPBD", double(code_lines("tests/benchmark/peers/xpbd.hpp")), "tests/benchmark/peers/xpbd.hpp"});
-    int exact = 0;
-    for (const char* name : {"chain_dynamics", "chain_series", "dop853", "exact"}) {
-        for (const char* ending : {".hpp", ".cpp"})
-            exact += code_lines(std::string("src/corda/sim/exact/") + name + ending);
+    for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-9}) all.push_back(run_exact(pendulum, tolerance));
+    time_in_turns(all, repeats_of(options));
+    json runs = json::array();
+    for (Run& run : all) {
+        run.error_m = largest_distance_m(run.frames, truth);
+        runs.push_back(run_json(run));
     }
-    exact +=
-        code_lines("src/corda/sim/exact/series_terms.hpp") + code_lines("src/corda/sim/chain_tensions.hpp");
-    table.add({"Corda, exact", double(exact), "src/corda/sim/exact, what a rigid chain needs of it"});
-    return table;
-}
-
-report::Table runs_table() {
-    report::Table table{"challenge", "XPBD and Corda on four pendulums", {}, {}, {}};
-    table.columns = {{"pendulum", "pendulum"},
-                     {"method", "method"},
-                     {"setting", "setting"},
-                     {"seconds", "compared for [s]"},
-                     {"error_m", "largest error [m]"},
-                     {"energy_error_over_mgl", "energy after 60 s / (M g L)"},
-                     {"strain_largest", "largest strain"},
-                     {"us_per_frame", "CPU time per frame [us]"}};
-    return table;
-}
-
-report::Table ratios_table() {
-    report::Table table{"challenge_ratios", "Time at equal error", {}, {}, {}};
-    table.columns = {{"pendulum", "pendulum"},           {"substeps", "XPBD"},
-                     {"error_m", "its error [m]"},       {"tolerance", "exact, at most this error"},
-                     {"exact_error_m", "its error [m]"}, {"ratio", "XPBD's time over exact's"}};
-    return table;
+    std::vector<Vec2> path;
+    for (const auto& frame : truth) path.push_back(frame.back());
+    return {{"id", pendulum.id},
+            {"pendulum", pendulum.name},
+            {"compared_s", pendulum.seconds},
+            {"true_last_pose_m", points_json(truth.back())},
+            {"true_path_of_the_end_m", points_json(path)},
+            {"runs", std::move(runs)}};
 }
 
 }  // namespace
 
-report::Chapter challenge_chapter(const Options& options) {
-    report::Chapter chapter;
-    chapter.title = "The pendulum challenge";
-    report::Table runs = runs_table();
-    report::Table ratios = ratios_table();
-    report::Table lines = lines_table();
+json measure_challenge(const Options& options, const OnRun& on_run) {
+    json rows = json::array();
     for (const Pendulum& pendulum : pendulums()) {
-        const Frames truth = true_frames(pendulum);
-        std::vector<Run> all;
-        for (const int substeps : {50, 500, 5000}) all.push_back(run_xpbd(pendulum, substeps));
-        for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-9}) all.push_back(run_exact(pendulum, tolerance));
-        time_in_turns(all, options.repeats);
-        for (Run& run : all) {
-            run.error_m = largest_distance_m(run.frames, truth);
-            runs.add({pendulum.name, run.method, run.setting, pendulum.seconds, run.error_m, run.energy_error,
-                      run.strain, run.microseconds_a_frame()});
-        }
-        for (std::size_t i = 0; i < 3; ++i) {
-            const auto best = std::find_if(all.begin() + 3, all.end(),
-                                           [&](const Run& run) { return run.error_m <= all[i].error_m; });
-            if (best == all.end()) continue;
-            ratios.add({pendulum.name, all[i].setting, all[i].error_m, best->setting, best->error_m,
-                        all[i].microseconds_a_frame() / best->microseconds_a_frame()});
-        }
-        chapter.plots.push_back(plot_of(pendulum, all[0], all[3], truth));
+        on_run(pendulum.name);
+        rows.push_back(measure_pendulum(pendulum, options));
     }
-    chapter.tables = {std::move(runs), std::move(ratios), std::move(lines)};
-    return chapter;
+    return {{"times", fmt::format("CPU time of one thread: the minimum of {} repeats of at least 10 ms, the "
+                                  "methods in turns",
+                                  repeats_of(options))},
+            {"pendulums", std::move(rows)}};
 }
 
-}  // namespace corda::benchmark
+}  // namespace corda::study

@@ -44,7 +44,7 @@ struct Options {
 
 volatile std::sig_atomic_t stop_signal = 0;
 
-nlohmann::json spread_json(const report::Times& times) {
+nlohmann::json spread_json(const study::Times& times) {
     return {{"median", times.median()}, {"least", times.least()}, {"largest", times.largest()}};
 }
 

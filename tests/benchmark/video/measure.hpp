@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "benchmark/study/times.hpp"
 #include "corda/pipeline/film.hpp"
-#include "corda/report/times.hpp"
 #include "corda/scene/scene.hpp"
 
 namespace corda::benchmark {
@@ -32,9 +32,9 @@ struct Stage {
 /// Figures of videos of one size and preset.
 struct Measured {
     std::int64_t frames = 0;
-    report::Times render_s;        ///< from the scene to the checked file
-    report::Times encoder_s;       ///< x264 alone, from memory, with a thread per core
-    report::Times ratio;           ///< of each render to the encoder that ran after it
+    study::Times render_s;         ///< from the scene to the checked file
+    study::Times encoder_s;        ///< x264 alone, from memory, with a thread per core
+    study::Times ratio;            ///< of each render to the encoder that ran after it
     std::int64_t pictures = 0;     ///< different ones that x264 alone encodes, there and back
     double peak_rss_mib = 0.0;     ///< of a render
     double encoder_rss_mib = 0.0;  ///< that one encoder of one thread takes

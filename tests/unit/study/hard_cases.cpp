@@ -1,4 +1,4 @@
-#include "corda/study/hard_cases.hpp"
+#include "benchmark/study/hard_cases.hpp"
 
 #include <gtest/gtest.h>
 

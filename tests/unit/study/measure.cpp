@@ -1,4 +1,4 @@
-#include "corda/study/measure.hpp"
+#include "benchmark/study/measure.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "corda/study/problems.hpp"
+#include "benchmark/study/problems.hpp"
 #include "own_problems.hpp"
 
 namespace corda::study {

@@ -1,4 +1,4 @@
-#include "corda/study/problems.hpp"
+#include "benchmark/study/problems.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

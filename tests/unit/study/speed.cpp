@@ -1,36 +1,20 @@
-#include "corda/study/speed.hpp"
+#include "benchmark/study/speed.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
+#include "benchmark/study/chapters.hpp"
 #include "own_problems.hpp"
 #include "support/nets.hpp"
 
 namespace corda::study {
 namespace {
 
-TEST(Speed, TakesTheCheapestRunThatMeetsTheError) {
-    std::vector<Measurement> runs(4);
-    runs[0].rms_error = 1e-2;
-    runs[0].ms_per_simulated_s.add(1.0);
-    runs[1].rms_error = 1e-5;
-    for (const double ms : {1.0, 5.0, 5.1}) runs[1].ms_per_simulated_s.add(ms);
-    runs[2].rms_error = 1e-7;
-    runs[2].ms_per_simulated_s.add(3.0);
-    runs[3].failure = "diverged";  // its error of 0 does not count
-    EXPECT_EQ(cheapest_within(runs, 1e-1), &runs[0]);
-    EXPECT_EQ(cheapest_within(runs, 1e-4), &runs[2]);
-    EXPECT_EQ(cheapest_within(runs, 1e-9), nullptr);
-    runs[1].rms_error = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(cheapest_within(runs, 1e-5), &runs[2]);
-}
-
 TEST(Times, HaveAMiddleAndEnds) {
-    report::Times times;
+    Times times;
     EXPECT_EQ(times.median(), 0.0);
     for (const double time : {3.0, 1.0, 10.0}) times.add(time);
     EXPECT_EQ(times.median(), 3.0);
@@ -54,6 +38,37 @@ TEST(Sweep, RunsARefusedMethodOncePerSeries) {
     std::set<std::string> labels;
     for (const SweepRun& run : open) labels.insert(run.label);
     EXPECT_EQ(labels.size(), 2U * 4U + 4U + 1U);  // reaches and sweeps of relaxation, orders of rattle, exact
+}
+
+TEST(Speed, OfASceneShowsFailedRuns) {
+    Options options;
+    options.quick = true;
+    options.scene = scene_with(test::ring(6), 0.1);
+    int calls = 0;
+    const nlohmann::json result = measure_speed(options, [&](const std::string& what) {
+        EXPECT_FALSE(what.empty());
+        ++calls;
+    });
+    ASSERT_EQ(result.at("problems").size(), 1U);
+    const nlohmann::json& problem = result["problems"][0];
+    EXPECT_EQ(problem.at("id"), "own_rope_1");
+    EXPECT_TRUE(problem.at("truth_of_exact").is_null());  // exact cannot run a closed rope
+    EXPECT_EQ(problem.at("runs").size(), static_cast<std::size_t>(calls - 1));
+    int failed = 0;
+    for (const nlohmann::json& run : problem["runs"]) {
+        EXPECT_GT(run.at("parameter"), 0.0);
+        if (run.contains("failure")) {
+            ++failed;
+            EXPECT_EQ(run.at("series"), "exact");
+            continue;
+        }
+        EXPECT_TRUE(run.at("error_rms_over_length").is_number()) << run;
+        EXPECT_LE(run.at("error_rms_over_length"), run.at("error_largest_over_length")) << run;
+        EXPECT_LE(run.at("ms_least"), run.at("ms_per_simulated_s")) << run;
+        EXPECT_LE(run.at("ms_per_simulated_s"), run.at("ms_largest")) << run;
+        EXPECT_GT(run.at("steps"), 0) << run;
+    }
+    EXPECT_EQ(failed, 1);
 }
 
 TEST(Sweep, StepsDivideAFrame) {

@@ -1,4 +1,4 @@
-#include "corda/study/swings.hpp"
+#include "benchmark/study/swings.hpp"
 
 #include <gtest/gtest.h>
 

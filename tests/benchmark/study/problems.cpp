@@ -1,4 +1,4 @@
-#include "corda/study/problems.hpp"
+#include "benchmark/study/problems.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/cancel.hpp"
 #include "corda/core/text.hpp"
 #include "corda/reference/pendulum.hpp"
 #include "corda/reference/ropes.hpp"
@@ -45,7 +44,6 @@ SharedRecording record(const Problem& problem, const MethodDef& method) {
     constexpr std::size_t kNoBudget = std::numeric_limits<std::size_t>::max();
     auto frames = std::make_shared<sim::Recording>(run.system().particle_count(), timeline.size(), kNoBudget);
     while (frames->size() < timeline.size()) {
-        check_cancelled();
         if (frames->advance(run, timeline, {}) == Status::kDiverged) break;
     }
     return frames;
@@ -224,7 +222,6 @@ void find_truth(Subject& subject) {
 }
 
 double rattle_step_s(const Problem& problem, int order) {
-    check_cancelled();
     const Simulation run(problem.system(), problem.world, RattleDef{order}, problem.fps.interval_s());
     double shortest_s = HUGE_VAL;
     for (const MethodDef& method : run.methods())

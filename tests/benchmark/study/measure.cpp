@@ -1,4 +1,4 @@
-#include "corda/study/measure.hpp"
+#include "benchmark/study/measure.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/cancel.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/text.hpp"
 #include "corda/sim/solver.hpp"
@@ -40,7 +39,6 @@ void watch(const Problem& problem, Measurement& result) {
     bool is_compared = false;
     for (std::int64_t k = 1; k <= problem.last_frame(); ++k) {
         const double time_s = problem.fps.time_s(k);
-        check_cancelled();
         if (run.advance_to(time_s) == Status::kDiverged) {
             result.failure = fmt::format("diverged before {:.6g} s", time_s);
             return;
@@ -58,15 +56,14 @@ void watch(const Problem& problem, Measurement& result) {
 
 /// Seconds that all frames take without the set-up. The bare solver is timed, without the figures that a
 /// Simulation works out.
-report::Times stepping_s(const Problem& problem, const MethodDef& method, const Timing& timing) {
+Times stepping_s(const Problem& problem, const MethodDef& method, const Timing& timing) {
     const System system = problem.system();
     const std::int64_t last_frame = problem.last_frame();
-    report::Times times_s;
+    Times times_s;
     for (int repeat = 0; repeat < timing.repeats; ++repeat) {
         double sum_s = 0.0;
         int runs = 0;
         do {
-            check_cancelled();
             const auto solver =
                 sim::make_solver(system, problem.world, {&method, 1}, problem.fps.interval_s());
             State state{0.0, system.x_m, system.y_m};
@@ -120,7 +117,6 @@ Probe::Probe(const RopeDef& rope, const WorldDef& world, const MethodDef& method
     : simulation_(build_system({&rope, 1}), world, method, frame_interval_s) {}
 
 void Probe::go(double time_s) {
-    check_cancelled();
     const double from_s = now_s();
     const Status status = simulation_.advance_to(time_s);
     wall_s_ += now_s() - from_s;

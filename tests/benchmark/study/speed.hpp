@@ -1,19 +1,11 @@
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
-#include "corda/study/measure.hpp"
-#include "corda/study/study.hpp"
+#include "benchmark/study/measure.hpp"
 
 namespace corda::study {
-
-/// The run that takes least time among those whose RMS error is at most `error`; null if there is none.
-[[nodiscard]] const Measurement* cheapest_within(std::span<const Measurement> runs, double error);
-
-/// The chapter "Speed against error", on the scene of `def` or on the built-in problems.
-[[nodiscard]] ChapterWork speed_work(const StudyDef& def);
 
 /// A run of a sweep.
 struct SweepRun {

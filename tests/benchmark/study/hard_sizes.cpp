@@ -6,12 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "benchmark/study/hard_cases.hpp"
+#include "benchmark/study/measure.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/reference/numbers.hpp"
 #include "corda/reference/ropes.hpp"
-#include "corda/report/writers.hpp"
-#include "corda/study/hard_cases.hpp"
-#include "corda/study/measure.hpp"
 
 namespace corda::study {
 namespace {
@@ -65,7 +64,7 @@ void add_sizes(std::vector<HardCase>& cases) {
     const RopeDef many = reference::straight_rope(100'000, 1.0, 45.0);
     const auto watch = [&](const RopeDef& rope, bool is_exact, double duration_s, double strain, Kind kind) {
         const MethodDef method = is_exact ? MethodDef(ExactDef{1e-7}) : MethodDef(RattleDef{2});
-        add_watched(fmt::format("{} links, {} s", rope.points_m.size() - 1, report::short_number(duration_s)),
+        add_watched(fmt::format("{} links, {:g} s", rope.points_m.size() - 1, duration_s),
                     is_exact ? "exact" : "rattle, order 2", rope, method,
                     {duration_s, strain, is_exact ? 1e-9 : 1e-3, (is_exact ? 1.0 : 10.0) / duration_s}, kind,
                     cases);
@@ -256,7 +255,7 @@ void add_long_runs(std::vector<HardCase>& cases) {
     // it rounding.
     const auto add = [&](int order, double step_s, double steps, double bound, Kind kind) {
         cases.push_back({fmt::format("{:.0e} steps, N = 1", steps), fmt::format("rattle, order {}", order),
-                         fmt::format("energy error < {}, no trend", report::short_number(bound)), kind, [=] {
+                         fmt::format("energy error < {:g}, no trend", bound), kind, [=] {
                              return many_steps({order, step_s}, steps, bound);
                          }});
     };

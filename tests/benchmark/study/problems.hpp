@@ -3,9 +3,9 @@
 #include <optional>
 #include <string>
 
+#include "benchmark/study/measure.hpp"
 #include "corda/reference/numbers.hpp"
 #include "corda/scene/scene.hpp"
-#include "corda/study/measure.hpp"
 
 namespace corda::study {
 

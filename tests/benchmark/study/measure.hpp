@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "benchmark/study/times.hpp"
 #include "corda/core/rational.hpp"
-#include "corda/report/times.hpp"
 #include "corda/sim/simulation.hpp"
 
 namespace corda::study {
@@ -45,7 +45,7 @@ struct Measurement {
     double rms_error = 0.0;      ///< largest, over the frames, of the RMS distance of the particles over L
     double largest_strain = 0.0;
     std::optional<double> energy_error;  ///< over m g L
-    report::Times ms_per_simulated_s;    ///< of the stepping alone; empty: not timed
+    Times ms_per_simulated_s;            ///< of the stepping alone; empty: not timed
     std::uint64_t steps = 0;
     std::string failure;  ///< why it failed; empty if it did not. A failed run is shown, never dropped.
 };

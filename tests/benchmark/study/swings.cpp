@@ -1,13 +1,13 @@
-#include "corda/study/swings.hpp"
+#include "benchmark/study/swings.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "benchmark/study/measure.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/reference/pendulum.hpp"
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/defs.hpp"
-#include "corda/study/measure.hpp"
 
 namespace corda::study {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "corda/study/measure.hpp"
+#include "benchmark/study/measure.hpp"
 
 namespace corda::study {
 

@@ -6,11 +6,10 @@
 
 #include <fmt/format.h>
 
+#include "benchmark/study/hard_cases.hpp"
+#include "benchmark/study/measure.hpp"
 #include "corda/reference/numbers.hpp"
 #include "corda/reference/ropes.hpp"
-#include "corda/report/writers.hpp"
-#include "corda/study/hard_cases.hpp"
-#include "corda/study/measure.hpp"
 
 namespace corda::study {
 namespace {
@@ -24,8 +23,8 @@ void add_payloads(std::vector<HardCase>& cases) {
                 RopeDef rope = reference::straight_rope(links, 1.0, angle_deg);
                 rope.payload_kg = payload_kg;
                 const auto name = [&](double duration_s) {
-                    return fmt::format("payload {} kg, {:g} deg, N = {}, {:g} s",
-                                       report::short_number(payload_kg), angle_deg, links, duration_s);
+                    return fmt::format("payload {:g} kg, {:g} deg, N = {}, {:g} s", payload_kg, angle_deg,
+                                       links, duration_s);
                 };
                 const bool is_heavy = payload_kg > 1e5;
                 // Measured: energy 3e-9 (1e3 kg at 90 deg), 4e-12 (the others).
@@ -124,7 +123,7 @@ void add_masses(std::vector<HardCase>& cases) {
         {"relaxation", RelaxationDef{1.0 / 960.0, 4}}};
     for (const double mass_kg : {1e-6, 1e6}) {
         for (const auto& [name, method] : methods) {
-            cases.push_back({fmt::format("all masses {} kg", report::short_number(mass_kg)), name,
+            cases.push_back({fmt::format("all masses {:g} kg", mass_kg), name,
                              "within 1e-10 m of masses of 1 kg", Kind::kQuick,
                              [=, method = method] { return same_masses(method, mass_kg, 1e-10); }});
         }
@@ -179,17 +178,17 @@ void add_inverted(std::vector<HardCase>& cases) {
         const auto row = std::ranges::find_if(
             reference::kSwingPeriods, [angle = angle_deg](const auto& r) { return r.angle_deg == angle; });
         const auto add = [&, bound = bound_m](const char* name, const MethodDef& method) {
-            cases.push_back({fmt::format("pendulum from {:g} deg", row->angle_deg), name,
-                             fmt::format("within {} m of the lowest point after R2's quarter period",
-                                         report::short_number(bound)),
-                             Kind::kQuick, [=] { return nearly_inverted(*row, method, bound); }});
+            cases.push_back(
+                {fmt::format("pendulum from {:g} deg", row->angle_deg), name,
+                 fmt::format("within {:g} m of the lowest point after R2's quarter period", bound),
+                 Kind::kQuick, [=] { return nearly_inverted(*row, method, bound); }});
         };
         add("exact", ExactDef{1e-13});
         add("rattle, order 8", RattleDef{8, 1.0 / 500.0});
     }
     const auto add = [&](const char* name, const MethodDef& method, double duration_s, double bound_m) {
         cases.push_back({fmt::format("exactly inverted, N = 10, {:g} s", duration_s), name,
-                         fmt::format("stays vertical, to {} m", report::short_number(bound_m)), Kind::kQuick,
+                         fmt::format("stays vertical, to {:g} m", bound_m), Kind::kQuick,
                          [=] { return inverted(method, duration_s, bound_m); }});
     };
     add("exact", ExactDef{1e-9}, 100.0, 1e-15);

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <utility>
 
+#include "benchmark/study/accuracy.hpp"
+#include "benchmark/study/problems.hpp"
 #include "corda/reference/numbers.hpp"
 #include "corda/reference/ropes.hpp"
-#include "corda/study/accuracy.hpp"
-#include "corda/study/problems.hpp"
 
 namespace corda::study {
 namespace {

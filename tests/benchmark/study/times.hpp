@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace corda::report {
+namespace corda::study {
 
 /// How long the repeats of something took.
 class Times {
@@ -32,4 +32,4 @@ class Times {
     std::vector<double> times_;  ///< ascending
 };
 
-}  // namespace corda::report
+}  // namespace corda::study

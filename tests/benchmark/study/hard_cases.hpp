@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "corda/study/study.hpp"
+#include "benchmark/study/measure.hpp"
 
 namespace corda::study {
 
@@ -56,7 +56,5 @@ struct Limits {
 void add_watched(const std::string& name, const char* method_name, const RopeDef& rope,
                  const MethodDef& method, const Limits& limits, HardCase::Kind kind,
                  std::vector<HardCase>& cases);
-
-[[nodiscard]] ChapterWork hard_cases_work(const StudyDef& def);
 
 }  // namespace corda::study

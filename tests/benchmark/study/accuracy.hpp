@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "corda/study/measure.hpp"
-#include "corda/study/study.hpp"
+#include "benchmark/study/measure.hpp"
 
 namespace corda::study {
 
@@ -57,8 +56,5 @@ void add_material_cases(std::vector<AccuracyCase>& cases);
 
 /// Runs a case by each of its methods. A run that fails has a row that says why.
 [[nodiscard]] std::vector<AccuracyRow> run_accuracy_case(const AccuracyCase& given, const Timing& timing);
-
-/// The chapter "Reference numbers".
-[[nodiscard]] ChapterWork accuracy_work(const StudyDef& def);
 
 }  // namespace corda::study

@@ -1,46 +1,32 @@
-#include "corda/study/hard_cases.hpp"
+#include "benchmark/study/hard_cases.hpp"
 
-#include <algorithm>
 #include <limits>
-#include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "benchmark/study/chapters.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/machine.hpp"
-#include "corda/report/writers.hpp"
 #include "corda/scene/scene.hpp"
 
 namespace corda::study {
 namespace {
 
-constexpr const char* kPassed = "yes";
-constexpr const char* kFailed = "no";
-constexpr const char* kNotRun = "not run";
-
-std::vector<report::Cell> row_of(const HardCase& hard, bool is_quick) {
-    std::vector<report::Cell> row{hard.name, hard.method, hard.criterion};
-    if (hard.kind != HardCase::Kind::kQuick && is_quick) {
-        row.insert(row.end(), {"too slow for a quick study", kNotRun});
-        return row;
-    }
+/// "passed" is null for a case that is not run.
+nlohmann::json case_json(const HardCase& hard, bool is_quick) {
+    nlohmann::json result{{"case", hard.name},
+                          {"method", hard.method},
+                          {"criterion", hard.criterion},
+                          {"measured", "too slow for a quick study"},
+                          {"passed", nullptr}};
+    if (hard.kind != HardCase::Kind::kQuick && is_quick) return result;
     const double from_s = now_s();
     const Outcome outcome = run_hard_case(hard);
-    row.insert(row.end(), {outcome.measured, outcome.passed ? kPassed : kFailed, now_s() - from_s});
-    return row;
-}
-
-report::Chapter chapter_of(const report::Table& table) {
-    const auto count = [&](const char* result) {
-        return std::ranges::count_if(table.rows,
-                                     [&](const auto& row) { return row[4] == report::Cell(result); });
-    };
-    report::Chapter chapter{.title = "Hard cases"};
-    chapter.summary = fmt::format("Of {} hard cases, {} passed, {} failed and {} were not run.",
-                                  table.rows.size(), count(kPassed), count(kFailed), count(kNotRun));
-    chapter.paragraphs = {chapter.summary};
-    chapter.tables = {table};
-    return chapter;
+    result["measured"] = outcome.measured;
+    result["passed"] = outcome.passed;
+    result["wall_s"] = now_s() - from_s;
+    return result;
 }
 
 /// Passes if each of these scenes is refused as invalid.
@@ -87,8 +73,7 @@ void add_watched(const std::string& name, const char* method_name, const RopeDef
                  const MethodDef& method, const Limits& limits, HardCase::Kind kind,
                  std::vector<HardCase>& cases) {
     cases.push_back({name, method_name,
-                     fmt::format("strain < {}, energy error < {}", report::short_number(limits.strain),
-                                 report::short_number(limits.energy_error)),
+                     fmt::format("strain < {:g}, energy error < {:g}", limits.strain, limits.energy_error),
                      kind, [=] { return watch(rope, method, limits); }});
 }
 
@@ -108,20 +93,13 @@ Outcome run_hard_case(const HardCase& hard) {
     }
 }
 
-ChapterWork hard_cases_work(const StudyDef& def) {
-    const auto table = std::make_shared<report::Table>();
-    table->id = "hard_cases";
-    table->title = "Hard cases";
-    table->columns = {{"case", "case"},         {"method", "method"}, {"criterion", "passes if"},
-                      {"measured", "measured"}, {"passed", "passed"}, {"wall_s", "wall time [s]"}};
-    table->note = "An energy error is a fraction of the total weight times the length.";
-    ChapterWork work;
+nlohmann::json measure_hard_cases(const Options& options, const OnRun& on_run) {
+    nlohmann::json rows = nlohmann::json::array();
     for (const HardCase& hard : hard_cases()) {
-        work.jobs.push_back({hard.name + ", " + hard.method,
-                             [table, hard, is_quick = def.quick] { table->add(row_of(hard, is_quick)); }});
+        on_run(hard.name + ", " + hard.method);
+        rows.push_back(case_json(hard, options.quick));
     }
-    work.finish = [table] { return chapter_of(*table); };
-    return work;
+    return {{"cases", std::move(rows)}};
 }
 
 }  // namespace corda::study

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "benchmark/study/accuracy.hpp"
+#include "benchmark/study/problems.hpp"
 #include "corda/reference/numbers.hpp"
 #include "corda/reference/pendulum.hpp"
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/defs.hpp"
-#include "corda/study/accuracy.hpp"
-#include "corda/study/problems.hpp"
 
 namespace corda::study {
 namespace {
