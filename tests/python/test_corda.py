@@ -350,6 +350,12 @@ def test_stubs_tell_all_names_and_parameters():
         check(getattr(corda, name), names[name])
     of_testing = ast.parse((pathlib.Path(corda.__file__).parent / "testing.pyi").read_text()).body
     check(corda.testing.assert_matches_golden, of_testing[-1])
+    pytest.importorskip("matplotlib")
+    of_plot = ast.parse((pathlib.Path(corda.__file__).parent / "plot.pyi").read_text()).body
+    plots = {node.name: node for node in of_plot if isinstance(node, ast.FunctionDef)}
+    assert set(plots) == set(corda.plot.__all__)
+    for name, node in plots.items():
+        check(getattr(corda.plot, name), node)
     methods = {node.name: node for node in names["Film"].body if isinstance(node, ast.FunctionDef)}
     for name, value in vars(corda.Film).items():
         if inspect.isfunction(value) and name not in ("_repr_html_", "__repr__"):

@@ -11,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "figures.hpp"
 #include "py_film.hpp"
 
 namespace {
@@ -140,15 +141,15 @@ void add_errors(py::module_& module) {
 
 void add_film(py::module_& module) {
     using corda::Film;
-    py::class_<PyFilm>(module, "Film")
-        .def(py::init([](const std::string& text, const std::string& source, bool is_path,
+    py::class_<PyFilm> film(module, "Film");
+    film.def(py::init([](const std::string& text, const std::string& source, bool is_path,
                          const std::vector<std::string>& settings, const std::string& backend,
-                         bool require_gpu) {
+                         bool require_gpu, bool has_fields) {
             const corda::Scene scene = Asking().run([&] {
                 return is_path ? corda::load_scene(source, settings)
                                : corda::parse_scene(text, source, settings);
             });
-            return std::make_unique<PyFilm>(scene, backend, require_gpu);
+            return std::make_unique<PyFilm>(scene, backend, require_gpu, has_fields);
         }))
         .def("frame_count", [](const PyFilm& film) { return film.constant().frame_count(); })
         .def("size",
@@ -180,6 +181,7 @@ void add_film(py::module_& module) {
         .def("plan", &plan)
         .def("camera", &camera)
         .def("save", &save);
+    corda::python::add_figures(module, film);
 }
 
 }  // namespace

@@ -168,8 +168,12 @@ class Asking {
 /// A film that any thread of Python may use; calls of several threads wait for each other.
 class PyFilm : NonCopyable {
   public:
-    PyFilm(const Scene& scene, const std::string& backend, bool require_gpu) {
-        const FilmDef def{.backend = backend, .require_gpu = require_gpu};
+    /// `has_fields`: its states have velocities and tensions from the start, so that with_fields() needs no
+    /// other film.
+    PyFilm(const Scene& scene, const std::string& backend, bool require_gpu, bool has_fields = false)
+        : has_fields_(has_fields) {
+        FilmDef def{.backend = backend, .require_gpu = require_gpu};
+        if (has_fields) def.readings = kFields;
         Asking().run([&] { film_ = std::make_unique<Film>(scene, def); });
     }
     ~PyFilm() {
@@ -214,19 +218,20 @@ class PyFilm : NonCopyable {
     }
 
     /// As with_film(), with a film of the same motion whose states have velocities and tensions. The first
-    /// call simulates the motion once more.
+    /// call simulates the motion once more, unless the film has them.
     template <class Work>
     auto with_fields(const Work& work) {
         return with_film([&](Film& film) {
-            if (!with_fields_) {
-                const StateFields fields{.velocities = true, .tensions = true, .unknown_tensions = true};
-                with_fields_ = std::make_unique<Film>(frozen_scene(film), FilmDef{.readings = fields});
-            }
+            if (has_fields_) return work(film);
+            if (!with_fields_)
+                with_fields_ = std::make_unique<Film>(frozen_scene(film), FilmDef{.readings = kFields});
             return work(*with_fields_);
         });
     }
 
   private:
+    static constexpr StateFields kFields{.velocities = true, .tensions = true, .unknown_tensions = true};
+
     void leak() {
         static_cast<void>(film_.release());
         static_cast<void>(with_fields_.release());
@@ -259,6 +264,7 @@ class PyFilm : NonCopyable {
     std::atomic<pid_t> process_ = 0;         ///< the process that is using the film; 0: none
     std::atomic<std::thread::id> thread_{};  ///< the thread that is using the film
     std::unique_ptr<Film> film_;
+    bool has_fields_;
     std::unique_ptr<Film> with_fields_;
 };
 

@@ -30,6 +30,8 @@ error below {} px|Fehler unter {} px|erro abaixo de {} px|error menor de {} px|e
 largest tension|größte Zugkraft|maior tensão|tensión máxima|tension maximale
 largest strain|größte Dehnung|maior deformação|deformación máxima|déformation maximale
 distance along the rope|Weg entlang des Seils|distância ao longo da corda|distancia a lo largo de la cuerda|distance le long de la corde
+theory|Theorie|teoria|teoría|théorie
+at rest|in Ruhe|em repouso|en reposo|au repos
 Report of {}|Bericht zu {}|Relatório de {}|Informe de {}|Rapport de {}
 Setting|Angaben|Dados|Datos|Données
 Largest figures, at frame times|Größte Werte, zu den Zeiten der Bilder|Maiores valores, nos tempos dos quadros|Valores máximos, en los tiempos de los fotogramas|Valeurs maximales, aux temps des images

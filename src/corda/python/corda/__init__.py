@@ -6,6 +6,9 @@
     film.positions            # float64 (frames, particles, 2), metres, y up
     film.save("swing.mp4")
 
+    import corda.plot         # needs matplotlib
+    corda.plot.angle(film)    # and energy, phase, tip, tension, divergence
+
     for sample in corda.sweep("sweep.toml"):    # one scene, many parameters: dictionaries of parameters and arrays
         ...
 
@@ -18,6 +21,7 @@ import base64 as _base64
 import collections.abc as _abc
 import decimal as _decimal
 import fractions as _fractions
+import importlib as _importlib
 import json as _json
 import math as _math
 import numbers as _numbers
@@ -49,6 +53,15 @@ except ImportError:
 from ._corda import Error, __version__
 
 __all__ = ["Difference", "Error", "Film", "__version__", "compare", "read_png", "sweep", "write_png"]
+
+
+
+def __getattr__(name):
+    """corda.plot without `import corda.plot`; it needs matplotlib, which all else does without."""
+    if name == "plot":
+        return _importlib.import_module(".plot", __name__)
+    raise AttributeError(f"module 'corda' has no attribute {name!r}")
+
 
 Error.__doc__ = "A failure of Corda, with a message. `code`: the exit code of the program (int)."
 
@@ -233,6 +246,9 @@ class Film:
     #: Largest video in bytes that a notebook embeds.
     largest_embedded = 32_000_000
 
+    #: For corda.plot: see corda/_motion.py.
+    _motion = None
+
     def __init__(self, path=None, *, text=None, settings=None, backend=None, require_gpu=False, **keys):
         if (path is None) == (text is None):
             raise TypeError("Film takes a path or text=..., and not both")
@@ -243,7 +259,7 @@ class Film:
             raise TypeError(f"require_gpu: takes True or False, not {require_gpu!r}")
         self._gl = (backend or _os.environ.get("CORDA_BACKEND") or "auto", bool(require_gpu))
         try:
-            self._film = _corda.Film(_text(text or "", "text"), source, path is not None, list(lines), *self._gl)
+            self._film = _corda.Film(_text(text or "", "text"), source, path is not None, list(lines), *self._gl, False)
         except Error as error:
             raise _in_words_of_the_caller(error, lines) from None
 
@@ -285,6 +301,25 @@ class Film:
         """The picture at a time in seconds, 0 .. duration, like frame(); `shutter`, 0 .. 1, blurs it like video.shutter.
         Raises Error (code 2) for other values."""
         return self._film.still(_float(time, "time"), _float(shutter, "shutter"))
+
+    def save_still(self, path, times, *, width_mm=None, font_pt=9, force=False):
+        """Draws the poses at one or more times in s, 0 .. duration, in one picture, earlier ones fainter, like `corda still`
+        and `corda strobe`; the extension of `path`, .png, .svg or .pdf, chooses the format.
+
+        width_mm: its width in print, 1 .. 10000. Then it has letters of font_pt points, PNGs have 300 pixels per inch, what
+        the scene says in pixels keeps its share of the width, and the theme is paper unless the scene names one, has a dark
+        background, or colours that do not show on white. Without it, the picture has the pixels of a frame. force: replace an
+        existing file. Raises Error: code 2 for times, width or extension, 6 for a file that exists or cannot be written, 4
+        without OpenGL for .png.
+        """
+        times = [times] if isinstance(times, (_numbers.Real, _decimal.Decimal)) else times
+        times = sorted({_float(time, "times") for time in times})
+        if width_mm is not None and not 1.0 <= _float(width_mm, "width_mm") <= 10000.0:
+            raise _error(f"width_mm: takes 1 .. 10000 mm, not {width_mm!r}")
+        if not 1.0 <= _float(font_pt, "font_pt") <= 100.0:
+            raise _error(f"font_pt: takes 1 .. 100 points, not {font_pt!r}")
+        width_mm = width_mm if width_mm is None else float(width_mm)
+        self._film.save_still(_path(path), times, width_mm, float(font_pt), bool(force))
 
     @property
     def positions(self):

@@ -1,4 +1,4 @@
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 from os import PathLike
 from typing import Any, NamedTuple, NotRequired, SupportsIndex, TypedDict, overload
@@ -46,6 +46,15 @@ class Film:
     def fps(self) -> float: ...
     def frame(self, k: SupportsIndex) -> NDArray[np.uint8]: ...
     def still(self, time: float, shutter: float = 0.0) -> NDArray[np.uint8]: ...
+    def save_still(
+        self,
+        path: str | bytes | PathLike[str],
+        times: float | Iterable[float],
+        *,
+        width_mm: float | None = None,
+        font_pt: float = 9,
+        force: bool = False,
+    ) -> None: ...
     @property
     def positions(self) -> NDArray[np.float64]: ...
     @property

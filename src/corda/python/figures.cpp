@@ -1,0 +1,321 @@
+// What corda.plot and corda.report need of a film besides its public arrays, and drawings in print.
+#include "figures.hpp"
+
+#include <corda/core/cancel.hpp>
+#include <corda/core/markup.hpp>
+#include <corda/core/text.hpp>
+#include <corda/pipeline/film_renderer.hpp>
+#include <corda/pipeline/plan_text.hpp>
+#include <corda/pipeline/tracked_particle.hpp>
+#include <corda/sim/recording.hpp>
+#include <corda/sim/solver.hpp>
+#include <corda/view/colors.hpp>
+#include <corda/view/words.hpp>
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace corda::python {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kPrintPpi = 300.0;
+constexpr double kScreenPpi = 96.0;
+constexpr double kPointsPerInch = 72.0;
+
+/// Whether lines of a colour can be seen on white: a contrast of 2 or more, as WCAG 2.1 defines it, without
+/// its gamma of sRGB's foot.
+bool shows_on_white(const Color& color) {
+    constexpr double kContrast = 2.0;
+    constexpr double kGlare = 0.05;
+    const auto linear = [&](int channel) {
+        constexpr double kGamma = 2.2;
+        return std::pow((channel * color.a + 255.0 * (255 - color.a)) / (255.0 * 255.0), kGamma);
+    };
+    const double luminance = 0.2126 * linear(color.r) + 0.7152 * linear(color.g) + 0.0722 * linear(color.b);
+    return (1.0 + kGlare) / (luminance + kGlare) >= kContrast;
+}
+
+/// The style of a scene in print: the paper theme if it names none, unless its own ground is dark, or one of
+/// its own colours of ropes and nets does not show on white.
+StyleDef style_in_print(const Scene& scene) {
+    StyleDef style = scene.style;
+    const auto& ground = style.background;
+    const auto all_show = [](const std::vector<Color>& colors) {
+        return std::ranges::all_of(colors, shows_on_white);
+    };
+    const bool is_dark = ground && (shows_on_white(ground->top) || shows_on_white(ground->bottom));
+    const bool show =
+        all_show(style.palette) && std::ranges::all_of(scene.body_styles, [&](const auto& body) {
+            return (!body.color || shows_on_white(*body.color)) && all_show(body.link_colors);
+        });
+    if (!style.theme && !is_dark && show) style.theme = Theme::kPaper;
+    return style;
+}
+
+/// The colour of each body in print as "#rrggbb"; empty if it does not show on white, or colours tell
+/// something else than bodies.
+std::vector<std::string> curve_colors(const Scene& scene, std::size_t count) {
+    const StyleDef style = style_in_print(scene);
+    const std::vector<Color> palette = view::look_of(style).palette;
+    std::vector<std::string> texts;
+    std::size_t next = 0;
+    for (std::size_t b = 0; b < count; ++b) {
+        const BodyStyleDef own = b < scene.body_styles.size() ? scene.body_styles[b] : BodyStyleDef{};
+        Color color = own.color ? *own.color : palette[next++ % palette.size()];
+        color.a = 255;
+        const bool is_usable = style.color_by == ColorBy::kBody && shows_on_white(color);
+        texts.push_back(is_usable ? color.text() : "");
+    }
+    return texts;
+}
+
+/// The look of a scene in print: its shape, a width in millimetres at kPrintPpi, letters of that size and no
+/// live plot. What the scene says in pixels keeps its share of the width.
+Scene look_in_print(const Scene& scene, double width_mm, double letter_pt) {
+    // Limits of height over width, so that a picture fits a page, and of widths in a scene.
+    constexpr double kFlattest = 0.2;
+    constexpr double kTallest = 1.4;
+    constexpr double kThinnestPx = 0.1;
+    constexpr double kThickestPx = 1000.0;
+    Scene look = scene;
+    look.style = style_in_print(scene);
+    VideoDef& video = look.video;
+    const double shape = std::clamp(1.0 * video.height_px / video.width_px, kFlattest, kTallest);
+    const double factor = kPrintPpi * width_mm / kMmPerInch / video.width_px;
+    video.width_px = static_cast<int>(std::lround(video.width_px * factor));
+    video.height_px = static_cast<int>(std::lround(shape * video.width_px));
+    const auto scale = [&](std::optional<double>& width_px) {
+        if (width_px) width_px = std::clamp(*width_px * factor, kThinnestPx, kThickestPx);
+    };
+    StyleDef& style = look.style;
+    for (auto* width_px :
+         {&style.rope_width_px, &style.net_width_px, &style.marker_radius_px, &style.bar_width_px})
+        scale(*width_px);
+    for (BodyStyleDef& body : look.body_styles) {
+        scale(body.width_px);
+        scale(body.end_width_px);
+    }
+    look.overlay.plots.clear();
+    look.overlay.text_px = letter_pt / kPointsPerInch * kPrintPpi;
+    return look;
+}
+
+/// A row of numbers per frame, up to the frame at which the motion diverges.
+struct Rows {
+    std::vector<double> times_s;
+    std::vector<double> positions_m;  ///< pairs per particle, relative to the system's origin
+    std::vector<double> velocities_m_s;
+    std::vector<double> tensions_n;  ///< per link, body by body
+    std::vector<double> strains;     ///< the same
+    std::vector<double> energies_j;  ///< kinetic, of the weight, elastic
+    std::vector<double> energy_errors;
+    std::optional<std::string> failure;
+    Diagnostics diagnostics;
+};
+
+void append_pairs(const std::vector<double>& x, const std::vector<double>& y, std::vector<double>& pairs) {
+    for (std::size_t i = 0; i < x.size(); ++i) pairs.insert(pairs.end(), {x[i], y[i]});
+}
+
+Rows read_rows(Film& film) {
+    Rows rows;
+    const System& system = film.system();
+    for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
+        check_cancelled();
+        try {
+            static_cast<void>(film.state(k));
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::kDiverged || k == 0) throw;
+            rows.failure = error.what();
+            break;
+        }
+        const State& state = film.state(k);
+        rows.times_s.push_back(state.time_s);
+        append_pairs(state.x_m, state.y_m, rows.positions_m);
+        append_pairs(state.vx_m_s, state.vy_m_s, rows.velocities_m_s);
+        for (const Body& body : system.bodies) {
+            for (std::size_t i = body.first_bar; i < body.first_bar + body.link_count; ++i) {
+                rows.tensions_n.push_back(sim::kind_of(Quantity::kTension).value(system, body, i, state));
+                rows.strains.push_back(sim::kind_of(Quantity::kStrain).value(system, body, i, state));
+            }
+        }
+        const Energy energy = film.energy();
+        rows.energies_j.insert(rows.energies_j.end(), {energy.kinetic_j, energy.weight_j, energy.elastic_j});
+        rows.energy_errors.push_back(film.figures().energy_error.value_or(kUnknown));
+    }
+    rows.diagnostics = film.diagnostics();
+    return rows;
+}
+
+py::array_t<double> to_array(const std::vector<double>& numbers, std::size_t frames, py::ssize_t pairs = 1) {
+    const auto rows = static_cast<py::ssize_t>(frames);
+    const py::ssize_t columns = static_cast<py::ssize_t>(numbers.size()) / rows / pairs;
+    if (pairs == 1) return py::array_t<double>({rows, columns}, numbers.data());
+    return py::array_t<double>({rows, columns, pairs}, numbers.data());
+}
+
+py::dict rows(PyFilm& film) {
+    const Rows read = film.with_fields(read_rows);
+    const std::size_t frames = read.times_s.size();
+    py::dict all;
+    all["times"] = py::array_t<double>(static_cast<py::ssize_t>(frames), read.times_s.data());
+    all["positions"] = to_array(read.positions_m, frames, 2);
+    all["velocities"] = to_array(read.velocities_m_s, frames, 2);
+    all["tensions"] = to_array(read.tensions_n, frames);
+    all["strains"] = to_array(read.strains, frames);
+    all["energies"] = to_array(read.energies_j, frames);
+    all["energy_errors"] = py::array_t<double>(static_cast<py::ssize_t>(frames), read.energy_errors.data());
+    all["failure"] = read.failure ? py::object(text_of(read.failure->c_str())) : py::none();
+    const Figures& largest = read.diagnostics.largest;
+    all["energy_error"] = largest.energy_error;
+    all["pin_force_n"] = largest.loads ? std::optional(largest.loads->pin_force_n) : std::nullopt;
+    all["branched_s"] = read.diagnostics.branched_s;
+    return all;
+}
+
+py::dict body_facts(const Film& film, const System& named, std::size_t b,
+                    const std::vector<pipeline::TrackedParticle>& tracked) {
+    const System& system = film.system();
+    const Body& body = system.bodies[b];
+    py::dict facts;
+    facts["name"] = text_of(printable(body_name(named, b)).c_str());
+    facts["shown_name"] =
+        text_of(printable(view::translated_name(named, b, film.scene().overlay.language)).c_str());
+    facts["is_net"] = body.is_net;
+    facts["is_chain"] = body.is_chain;
+    facts["particles"] = py::make_tuple(body.first_particle, body.first_particle + body.particle_count);
+    std::vector<double> rest_m;
+    std::vector<std::uint32_t> ends;
+    for (std::size_t i = body.first_bar; i < body.first_bar + body.link_count; ++i) {
+        rest_m.push_back(system.bars[i].rest_m);
+        ends.insert(ends.end(), {system.bars[i].a, system.bars[i].b});
+    }
+    const auto links = static_cast<py::ssize_t>(body.link_count);
+    facts["rest_m"] = py::array_t<double>(links, rest_m.data());
+    facts["ends"] = py::array_t<std::uint32_t>({links, py::ssize_t{2}}, ends.data());
+    std::uint32_t reach = 1;
+    for (std::size_t i = body.first_bar; i < body.first_bar + body.bar_count; ++i)
+        reach = std::max(reach, system.bars[i].reach);
+    facts["reach"] = reach;
+    facts["compliance"] = body.material.compliance_1_n;
+    facts["payload_kg"] = body.payload_kg;
+    const MethodDef& method = film.plan().bodies[b].method;
+    facts["method"] = std::string(method_name(method));
+    facts["knows_tensions"] = sim::knows_tensions(method);
+    facts["moves"] = false;
+    for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i)
+        if (!system.is_pinned(i)) facts["moves"] = true;
+    for (const pipeline::TrackedParticle& one : tracked) {
+        if (one.body != b) continue;
+        facts["tracked"] = one.particle;
+        facts["is_free_end"] = one.is_free_end;
+        facts["pin"] = one.pin;
+    }
+    return facts;
+}
+
+/// What the plan says in words.
+py::dict plan_facts(const Film& film, const std::optional<std::string>& estimate) {
+    const Plan& plan = film.plan();
+    const std::vector<MethodGroup> groups = groups_of(plan);
+    py::dict facts;
+    facts["system"] = system_text(film.system());
+    facts["modelled"] = modelled_terms(film.scene(), plan);
+    facts["method"] = method_names(plan);
+    facts["solver"] = text_of(plan_text(film.system(), plan).c_str());
+    facts["reason"] = groups.size() == 1
+                          ? py::object(py::str(reason_text(plan.bodies[groups.front().bodies.front()])))
+                          : py::none();
+    facts["estimate"] = estimate ? py::object(text_of(estimate->c_str())) : py::none();
+    facts["bars"] = film.system().bars.size();
+    return facts;
+}
+
+py::dict facts(PyFilm& film) {
+    std::optional<std::string> estimate;
+    const int passes = film.with_film([&](Film& shown) {
+        estimate = error_estimate_text(shown);
+        return shown.simulation_passes();
+    });
+    const Film& shown = film.constant();
+    const Scene& scene = shown.scene();
+    const System& system = shown.system();
+    const System named = named_in_files(scene, system);
+    const std::vector<std::string> keys = body_keys(named);
+    const std::vector<std::string> colors = curve_colors(scene, system.bodies.size());
+    const auto tracked = pipeline::tracked_particles(system);
+    py::dict all = plan_facts(shown, estimate);
+    py::list bodies;
+    for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+        py::dict body = body_facts(shown, named, b, tracked);
+        body["key"] = text_of(keys[b].c_str());
+        body["color"] = colors[b];
+        bodies.append(std::move(body));
+    }
+    all["bodies"] = bodies;
+    all["mass_kg"] =
+        py::array_t<double>(static_cast<py::ssize_t>(system.mass_kg.size()), system.mass_kg.data());
+    py::array_t<bool> pinned(static_cast<py::ssize_t>(system.particle_count()));
+    for (std::size_t i = 0; i < system.particle_count(); ++i) pinned.mutable_data()[i] = system.is_pinned(i);
+    all["pinned"] = pinned;
+    all["bends"] = !system.bends.empty();
+    all["origin"] = py::make_tuple(system.origin_m.x, system.origin_m.y);
+    all["gravity"] = py::make_tuple(scene.world.gravity_m_s2.x, scene.world.gravity_m_s2.y);
+    const auto* const relaxation = std::get_if<RelaxationDef>(&scene.solver);
+    all["force"] = relaxation != nullptr && relaxation->force_n
+                       ? py::object(py::make_tuple(relaxation->force_n->x, relaxation->force_n->y))
+                       : py::none();
+    all["drag"] = scene.world.drag_1_s;
+    all["duration"] = scene.world.duration_s;
+    all["rate"] = scene.video.scene_rate().rational().text();
+    all["name"] = text_of(printable(scene.name).c_str());
+    all["title"] = text_of(printable(scene.overlay.title).c_str());
+    all["language"] = static_cast<int>(scene.overlay.language);
+    const Ground ground = view::look_of(style_in_print(scene)).ground;
+    all["is_on_white"] = !shows_on_white(ground.top) && !shows_on_white(ground.bottom);
+    all["simulation_passes"] = passes;
+    return all;
+}
+
+/// Writes the poses at some increasing times in one picture; the extension of `path` chooses the format.
+/// Without a width, the picture has the pixels and the look of the film.
+void save_still(PyFilm& film, const std::string& path, const std::vector<double>& times_s,
+                std::optional<double> width_mm, double letter_pt, bool force) {
+    film.with_film([&](Film& shown) {
+        FilmRenderer::keep(shown, times_s);
+        const Scene& scene = shown.scene();
+        PngInfo info;
+        info.text = {{"Title", printable(scene.name)},
+                     {"Time", fmt::format("{} s", fmt::join(times_s, ", "))}};
+        const OutputOptions options{.force = force};
+        if (!width_mm) {
+            info.pixels_per_inch = kScreenPpi;
+            return write_figure(path, shown, {.times_s = times_s}, info, options).size();
+        }
+        Film look = FilmRenderer::another_look(shown, look_in_print(scene, *width_mm, letter_pt));
+        info.pixels_per_inch = look.scene().video.width_px * kMmPerInch / *width_mm;
+        return write_figure(path, look, {.times_s = times_s}, info, options).size();
+    });
+}
+
+}  // namespace
+
+void add_figures(py::module_& module, py::class_<PyFilm>& film) {
+    film.def("facts", &facts).def("rows", &rows).def("save_still", &save_still);
+    module.attr("page_style") = kPageStyle;
+    module.def("translated", [](const std::string& english, int language) {
+        return view::translated(english, static_cast<Language>(language));
+    });
+}
+
+}  // namespace corda::python
