@@ -216,7 +216,7 @@ def tip(film, ax=None):
     unit, _ = plot.name_axes(("x", "m", largest), ("y", "m", largest))
     for curve, name, color in curves:
         plot.line(curve[:, 0] / unit, curve[:, 1] / unit, name, color)
-    plot.ax.set_aspect("equal", adjustable="datalim")
+    plot.ax.set_aspect("equal")
     return plot.finish()
 
 
