@@ -10,8 +10,6 @@ import platform
 import re
 from typing import NamedTuple
 
-from PIL import Image
-
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
@@ -117,6 +115,8 @@ def page_text(title, chapters):
 
 def save_picture(picture, folder):
     """Writes a picture as PNG, 80 pixels per inch."""
+    from PIL import Image  # which comes with matplotlib
+
     drawn = io.BytesIO()
     picture.figure.savefig(drawn, format="png", dpi=80, bbox_inches="tight")
     with Image.open(drawn) as image:  # fewer colours take a third of the bytes

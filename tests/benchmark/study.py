@@ -9,21 +9,19 @@ Chapters: speed, findings, accuracy, hard_cases, challenge, horizons; and peers,
 The measurements are kept as CHAPTER.json beside a page of its own, otherwise in build/study. Needs python3-matplotlib.
 """
 import argparse
+import importlib.util
 import json
 import os
 import pathlib
 import subprocess
 import sys
 
-try:
-    from chapters import CHAPTERS
-    from page import ROOT, marks_of, page_text, put, save_picture
-    from peers.tables import peers
-except ModuleNotFoundError as error:
-    sys.exit(f"study.py: there is no Python module {error.name}; install the package python3-matplotlib")
+from page import ROOT, marks_of, page_text, put, save_picture
 
 HERE = pathlib.Path(__file__).resolve().parent
 PAGES = [HERE / "README.md", ROOT / "README.md"]
+MEASURED = ("speed", "findings", "accuracy", "hard_cases", "challenge", "horizons")  # by benchmark_study
+CHAPTERS = (*MEASURED, "peers")
 
 
 def fail(code, message):
@@ -44,10 +42,9 @@ def options_of(arguments):
     parser.add_argument("--from", dest="source", type=pathlib.Path, help="folder with measurements")
     parser.add_argument("--program", type=pathlib.Path, help="benchmark_study; built if it is not given")
     options = parser.parse_args(arguments)
-    known = [*CHAPTERS, "peers"]
     for name in options.chapters:
-        if name not in known:
-            fail(2, f'there is no chapter "{name}"; known are {", ".join(known)}')
+        if name not in CHAPTERS:
+            fail(2, f'there is no chapter "{name}"; known are {", ".join(CHAPTERS)}')
     if "peers" in options.chapters and not options.source:
         fail(2, "peers are measured by tests/benchmark/peers.sh; give its folder: --from build/peers/runs")
     if options.set and not options.scene:
@@ -56,8 +53,10 @@ def options_of(arguments):
         options.output = pathlib.Path(f"{options.scene.stem}-study")
     if options.quick and not options.output:
         fail(2, "a quick study is not to quote from; give a folder for its page: -o FOLDER")
-    if not options.chapters:
-        options.chapters = chapters_in(options.source) if options.source else ["speed"] if options.scene else list(CHAPTERS)
+    if options.source:
+        options.chapters = options.chapters or chapters_in(options.source)
+    else:
+        options.chapters = options.chapters or (["speed"] if options.scene else MEASURED)
     return options
 
 
@@ -67,7 +66,7 @@ def file_of(chapter):
 
 def chapters_in(folder):
     """The chapters whose measurements are in a folder."""
-    found = [name for name in [*CHAPTERS, "peers"] if (folder / file_of(name)).exists()]
+    found = [name for name in CHAPTERS if (folder / file_of(name)).exists()]
     return found or fail(6, f"{folder}: has no measurements; they are files such as speed.json")
 
 
@@ -117,6 +116,13 @@ def prepare(folder, force):
         fail(6, f"{folder}: cannot be made: {error.strerror}")
 
 
+def chapter_of(name, path):
+    """The tables and plots of the measurements in a file."""
+    import chapters  # with matplotlib, which takes a second
+    from peers.tables import peers
+    return peers(path) if name == "peers" else chapters.CHAPTERS[name](read(path))
+
+
 def write_own_page(folder, title, chapters):
     """Writes all chapters as FOLDER/README.md, with the pictures of the last."""
     for picture in chapters[-1].pictures:
@@ -141,6 +147,8 @@ def write_parts(chapter, pages):
 
 def main():
     options = options_of(sys.argv[1:])
+    if not importlib.util.find_spec("matplotlib"):
+        fail(1, "there is no matplotlib; install the package python3-matplotlib")
     kept = options.output or ROOT / "build" / "study"
     if options.output:
         prepare(options.output, options.force)
@@ -154,7 +162,7 @@ def main():
         path = (options.source or kept) / file_of(name)
         if not options.source:
             measure(name, options, path)
-        chapters.append(peers(path) if name == "peers" else CHAPTERS[name](read(path)))
+        chapters.append(chapter_of(name, path))
         if options.output:
             write_own_page(options.output, title, chapters)
         else:
