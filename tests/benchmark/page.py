@@ -8,6 +8,7 @@ import math
 import pathlib
 import platform
 import re
+import textwrap
 from typing import NamedTuple
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -76,6 +77,11 @@ def table_text(heads, rows):
     return "\n".join(lines)
 
 
+def paragraph(text):
+    """A text in lines of 120 characters at most."""
+    return textwrap.fill(text, 120, break_long_words=False, break_on_hyphens=False)
+
+
 def table(mark, title, columns, records, note=""):
     """A Part with one row per record, a dict.
 
@@ -86,7 +92,7 @@ def table(mark, title, columns, records, note=""):
         columns = [*columns, ("failed because", "failure")]
     rows = [[record.get(key) for _, key in columns] for record in records]
     text = table_text([head for head, _ in columns], rows)
-    return Part(mark, title, text + (f"\n\n{note}" if note else ""), failures)
+    return Part(mark, title, text + (f"\n\n{paragraph(note)}" if note else ""), failures)
 
 
 def marks_of(text):

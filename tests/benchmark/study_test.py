@@ -113,12 +113,22 @@ def sample(chapter):
     run = {"series": "exact", "parameter": 0.01, "error_rms_over_length": 1e-5, "error_largest_over_length": 2e-5,
            "strain_largest": 0.0, "energy_error_over_mgl": None, "ms_per_simulated_s": 2.0, "ms_least": 1.0, "ms_largest": 3.0,
            "steps": 7}
+    swing = {"particles": 40, "mass_kg": 1.0, "sweeps": 1, "reach": 7, "bars": 252, "strain_largest": 0.1,
+             "rope_error_rms_over_length": 0.2, "rod_error_rms_over_length": 0.3, "energy_error_over_mgl": 0.4, "tip_speed_m_s": 5.0}
     return common | {
         "speed": {"problems": [{"id": "report_swing", "title": "S", "truth": "t", "truth_of_exact": None, "horizon_s": None,
                                 "runs": [run, {**run, "series": "rattle, order 4", "error_rms_over_length": 1e-7,
                                                "ms_per_simulated_s": 2.5}]}]},
         "accuracy": {"rows": [{"reference": "R1", "subject": "s", "quantity": "q", "case": str(error), "method": "m",
-                               "error": error, "bound": 1.0, "wall_ms": 1.0, "ms_per_simulated_s": 1.0 / error} for error in (0.25, 0.5)]},
+                               "error": error, "bound": 1.0, "wall_ms": 1.0, "ms_per_simulated_s": 1.0 / error}
+                              for error in (0.25, 0.5)]},
+        "findings": {"masses_under_gravity_kg": [0.1, 10.0], "difference_under_gravity_over_length": 0.0, "watched_s": 9.0,
+                     "rates": [{"particles": 20, "bars": 112, "report_updates_per_s": 610, "updates_per_s": 1e5}],
+                     "bars": [swing], "sizes": [swing],
+                     "settling": [{"delta": 0.0, "step_s": 0.1, "drag_1_s": 0.0, "relaxation_settles_s": None,
+                                   "rope_settles_s": 5.0}]},
+        "hard_cases": {"cases": [{"case": f"c{passed}", "method": "m", "criterion": "x < 1", "measured": "0.5", "passed": passed}
+                                 for passed in (True, True, False, None)]},
         "challenge": {"pendulums": [{"id": "three", "pendulum": "3 links", "compared_s": 4.0, "true_last_pose_m": [[0, 0], [1, 0]],
                                      "true_path_of_the_end_m": [[0, 0], [1, 1]],
                                      "runs": [{"method": method, "setting": setting, "error_m": error, "energy_error_over_mgl": 0.1,
@@ -144,6 +154,9 @@ def test_tables_follow_from_the_measurements():
     assert [row[1] for row in fastest] == ["exact", "exact", "rattle, order 4", "none", "none", "none"]
     assert fastest[2] == ["1e-6", "rattle, order 4", "0.01", "1e-7", "2.5", "1", "3"]
     assert rows_of(part_of("accuracy", "accuracy")) == [["R1 s (q)", "m", "0.5", "4"]]  # the largest of either
+    assert part_of("hard_cases", "hard_cases_passed").markdown == "Of 4 hard cases, 2 passed, 1 failed and 1 were not run."
+    assert [row[4] for row in rows_of(part_of("hard_cases", "hard_cases"))] == ["yes", "yes", "no", "not run"]
+    assert rows_of(part_of("findings", "settling")) == [["0", "0.1", "0", "", "5"]]
     assert [row[3:] for row in rows_of(part_of("challenge", "challenge_ratios"))] == [
         ["loose", "0.1", "3"], ["tight", "0.001", "20"]]
     assert rows_of(part_of("horizons", "horizons")) == [["few", "5", "2", "1", "1", "1", "0.9", "0.9", "1.2", "1.2", "1.5"]]
@@ -158,8 +171,7 @@ def test_failed_runs_are_shown():
 
 
 def test_every_mark_of_the_pages_has_a_part_with_the_heads_of_its_table():
-    parts = {part.mark: part for chapter in ("speed", "accuracy", "challenge", "horizons")
-             for part in chapters.CHAPTERS[chapter](sample(chapter)).parts}
+    parts = {part.mark: part for chapter, draw in chapters.CHAPTERS.items() for part in draw(sample(chapter)).parts}
     for path in (HERE / "README.md", page.ROOT / "README.md"):
         text = path.read_text(encoding="utf-8")
         for mark in page.marks_of(text):
@@ -167,7 +179,7 @@ def test_every_mark_of_the_pages_has_a_part_with_the_heads_of_its_table():
                 continue
             shown = tables_of(text.split(f"<!-- begin of {mark} -->")[1].split(f"<!-- end of {mark} -->")[0])
             written = tables_of(parts[mark].markdown + "\n")
-            assert shown[0][0] == written[0][0], mark
+            assert [table[0] for table in shown] == [table[0] for table in written], mark
             replaced = page.put(text, parts[mark])
             assert parts[mark].markdown in replaced, mark
             assert page.put(replaced, parts[mark]) == replaced, mark

@@ -8,7 +8,7 @@ import math
 
 from matplotlib.figure import Figure
 
-from page import Chapter, Part, Picture, processor
+from page import Chapter, Part, Picture, paragraph, processor
 
 GOALS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-9)
 # They know no mechanics: the equations of motion that they integrate are those of equations.hpp.
@@ -206,6 +206,6 @@ def peers(path):
         absent = [name for name in names if name not in runs[problem]]
         parts.append(f"### {title}\n\n![Time against error of every peer](peers_{problem}.png)\n\n"
                      + problem_table(runs[problem])
-                     + (f"\n\nWithout a formulation of this problem: {', '.join(absent)}." if absent else ""))
+                     + ("\n\n" + paragraph(f"Without a formulation of this problem: {', '.join(absent)}.") if absent else ""))
     return Chapter("Peers", [Part("peers", "", "\n\n".join(parts)),
                              Part("peers_rows", "", readme_rows(found, engines))], pictures)
