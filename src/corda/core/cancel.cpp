@@ -1,7 +1,6 @@
 #include "corda/core/cancel.hpp"
 
 #include <cassert>
-#include <exception>
 #include <utility>
 
 namespace corda {
@@ -49,8 +48,7 @@ void CancelScope::ask(const CancelScope* scope) {
 
 void check_cancelled() {
     detail::work_since_check = 0;
-    // A destructor that works while another error ends the work must not throw.
-    if (innermost == nullptr || std::uncaught_exceptions() > 0) return;
+    if (innermost == nullptr) return;
     const Callback callback;
     CancelScope::ask(callback.asked());
 }

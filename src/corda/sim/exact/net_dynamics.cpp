@@ -22,6 +22,9 @@ constexpr double kClosed = 1e-6;
 /// of the number of particles; beyond, sparse matrices (`rattle`) are quicker. A grid of 200 x 200 has 1600.
 constexpr double kMaxCube = 50'000.0;
 
+/// Rows that Gauss's elimination of the upper triangle takes at a time.
+constexpr std::size_t kRowsAtATime = 4;
+
 /// The product of complex numbers.
 Vec2 times(Vec2 a, Vec2 b) {
     return {a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x};
@@ -229,46 +232,48 @@ CORDA_AVX2_CLONES void NetDynamics::measure_torques(const double* y) {
     }
 }
 
-CORDA_AVX2_CLONES void NetDynamics::solve() {
-    // Gauss's elimination of the upper triangle, four rows at a time.
-    constexpr std::size_t kRows = 4;
-    constexpr std::size_t kProductsPerUpdate = 100;
+CORDA_AVX2_CLONES void NetDynamics::eliminate(std::size_t first, std::size_t end) {
     const std::size_t n = groups_;
     const auto row = [this, n](std::size_t k) { return inertia_kg_m2_.data() + k * n; };
     double* const right = right_.data();
-    for (std::size_t first = 0; first < n; first += kRows) {
-        const std::size_t end = std::min(first + kRows, n);
-        count_work((n - first) * (n - first) / kProductsPerUpdate);
-        for (std::size_t k = first; k < end; ++k) {
-            const double* const from = row(k);
-            for (std::size_t i = k + 1; i < n; ++i) {
-                const double factor = from[i] / from[k];
-                right[i] -= factor * right[k];
-                if (i >= end) continue;
-                double* __restrict const to = row(i);
-                for (std::size_t j = i; j < n; ++j) to[j] -= factor * from[j];
-            }
-        }
-        if (end - first < kRows) break;
-        const double* const a = row(first);
-        const double* const b = row(first + 1);
-        const double* const c = row(first + 2);
-        const double* const d = row(first + 3);
-        for (std::size_t i = end; i < n; ++i) {
-            const double fa = a[i] / a[first];
-            const double fb = b[i] / b[first + 1];
-            const double fc = c[i] / c[first + 2];
-            const double fd = d[i] / d[first + 3];
+    for (std::size_t k = first; k < end; ++k) {
+        const double* const from = row(k);
+        for (std::size_t i = k + 1; i < n; ++i) {
+            const double factor = from[i] / from[k];
+            right[i] -= factor * right[k];
+            if (i >= end) continue;
             double* __restrict const to = row(i);
-            for (std::size_t j = i; j < n; ++j)
-                to[j] = (((to[j] - fa * a[j]) - fb * b[j]) - fc * c[j]) - fd * d[j];
+            for (std::size_t j = i; j < n; ++j) to[j] -= factor * from[j];
         }
     }
+    if (end - first < kRowsAtATime) return;
+    const double* const a = row(first);
+    const double* const b = row(first + 1);
+    const double* const c = row(first + 2);
+    const double* const d = row(first + 3);
+    for (std::size_t i = end; i < n; ++i) {
+        const double fa = a[i] / a[first];
+        const double fb = b[i] / b[first + 1];
+        const double fc = c[i] / c[first + 2];
+        const double fd = d[i] / d[first + 3];
+        double* __restrict const to = row(i);
+        for (std::size_t j = i; j < n; ++j)
+            to[j] = (((to[j] - fa * a[j]) - fb * b[j]) - fc * c[j]) - fd * d[j];
+    }
+}
+
+void NetDynamics::solve() {
+    constexpr std::size_t kProductsPerUpdate = 100;
+    const std::size_t n = groups_;
+    for (std::size_t first = 0; first < n; first += kRowsAtATime) {
+        count_work((n - first) * (n - first) / kProductsPerUpdate);
+        eliminate(first, std::min(first + kRowsAtATime, n));
+    }
     for (std::size_t k = n; k-- > 0;) {
-        const double* const from = row(k);
-        double rest = right[k];
-        for (std::size_t j = k + 1; j < n; ++j) rest -= from[j] * right[j];
-        right[k] = rest / from[k];
+        const double* const from = inertia_kg_m2_.data() + k * n;
+        double rest = right_[k];
+        for (std::size_t j = k + 1; j < n; ++j) rest -= from[j] * right_[j];
+        right_[k] = rest / from[k];
     }
 }
 

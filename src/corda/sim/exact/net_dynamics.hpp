@@ -69,7 +69,9 @@ class NetDynamics final : public Dynamics {
     void set_start(const System& system);
     /// Replaces right_ by the angular accelerations that these torques cause, or the angular velocities that
     /// these angular momenta have. inertia_ is overwritten.
-    CORDA_AVX2_CLONES void solve();
+    void solve();
+    /// A step of solve(): eliminates the rows first .. end from those below.
+    CORDA_AVX2_CLONES void eliminate(std::size_t first, std::size_t end);
     /// Writes inertia_ of the state to its upper triangle. Adds to right_ the torques of centrifugal forces.
     CORDA_AVX2_CLONES void measure_torques(const double* y);
     [[nodiscard]] Vec2 turn(const double* y, std::size_t group) const {

@@ -153,6 +153,16 @@ TEST(NetDynamics, IsPreparedAndEliminatedInPartsThatCanBeCancelled) {
     const CancelScope count([&checks] { return ++checks > 0; });
     net.derivative(net.initial_state().data(), slope.data());
     EXPECT_GE(checks, 2);
+
+    // An exception passes all callers, wherever it ends the work.
+    const auto make = [&] { NetDynamics(system, Forces(WorldDef{})); };
+    checks = 0;
+    make();
+    EXPECT_GE(checks, 4);
+    for (int back = 1; back <= checks; back *= 2) {  // the last ones are of the elimination
+        const CancelScope ends = test::cancel_after(checks - back);
+        EXPECT_EQ(test::code_of(make), ExitCode::kInterrupted) << back;
+    }
 }
 
 TEST(NetDynamics, RefusesWhatIsNoNetOfGroups) {
