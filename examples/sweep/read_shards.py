@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The labels in the shards of a sweep, by tarfile and numpy alone.
 
-Usage: read_shards.py FOLDER, after `corda sweep clips.toml -o FOLDER`
+Usage: read_shards.py FOLDER, after `python3 -m corda sweep clips.toml -o FOLDER`
 """
 
 import io

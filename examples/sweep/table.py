@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A table of a sweep by pandas: how the period grows with the amplitude.
 
-Usage: table.py FOLDER, after `corda sweep clips.toml -o FOLDER`
+Usage: table.py FOLDER, after `python3 -m corda sweep clips.toml -o FOLDER`
 """
 
 import pathlib

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Batches of clips for PyTorch, made while they are read: no files, and each worker makes its own share.
+"""Batches of clips for PyTorch, made while they are read: no files. The sampler may shuffle them, or be a DistributedSampler.
 
 Usage: torch_clips.py clips.toml
 """
@@ -7,23 +7,24 @@ Usage: torch_clips.py clips.toml
 import sys
 
 import torch
-from torch.utils.data import DataLoader, IterableDataset, get_worker_info
+from torch.utils.data import DataLoader, Dataset
 
 import corda
 
 
-class Clips(IterableDataset):
+class Clips(Dataset):
     def __init__(self, path):
-        self.path = path
+        self.sweep = corda.Sweep(path)
 
-    def __iter__(self):
-        worker = get_worker_info()
-        for sample in corda.sweep(self.path, shard=(worker.id, worker.num_workers) if worker else None):
-            clip = torch.from_numpy(sample["frames"][..., :3]).permute(0, 3, 1, 2)  # frames, channels, height, width
-            tip = torch.from_numpy(sample["pixels"][:, -1])
-            yield clip, tip, sample["parameters"]["world.gravity"]
+    def __len__(self):
+        return len(self.sweep)
+
+    def __getitem__(self, i):
+        sample = self.sweep[i]
+        clip = torch.from_numpy(sample["frames"][..., :3]).permute(0, 3, 1, 2)  # frames, channels, height, width
+        return clip, torch.from_numpy(sample["pixels"][:, -1]), sample["parameters"]["world.gravity"]
 
 
 if __name__ == "__main__":
-    for clips, tips, gravity in DataLoader(Clips(sys.argv[1]), batch_size=8, num_workers=2):
+    for clips, tips, gravity in DataLoader(Clips(sys.argv[1]), batch_size=8, shuffle=True, num_workers=2):
         print(tuple(clips.shape), tuple(tips.shape), gravity.tolist())

@@ -24,7 +24,7 @@ install(TARGETS corda RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT prog
 file(GLOB pictures RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests/benchmark/*.png)
 foreach(page LICENSE README.md src/CHANGELOG.md src/cmake/LICENSES.md tests/benchmark/README.md ${pictures}
         src/corda/app/README.md src/corda/golden/README.md src/corda/media/README.md src/corda/python/README.md src/corda/scene/README.md
-        src/corda/serve/README.md src/corda/sweep/README.md)
+        src/corda/serve/README.md)
     cmake_path(GET page PARENT_PATH folder)
     install(FILES ${PROJECT_SOURCE_DIR}/${page} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT program)
 endforeach()

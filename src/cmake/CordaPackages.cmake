@@ -56,7 +56,8 @@ corda/corda.hpp: load or build a scene, simulate it, draw frames, write stills a
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-corda)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS python3-matplotlib)  # plots and reports
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS python3-matplotlib)  # plots, reports, figures of sweeps
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${CORDA_PYTHON_DEPENDS}, python3-numpy, ${loaded}")
-set(CPACK_DEBIAN_PYTHON_DESCRIPTION "The Python module corda: films as numpy arrays, as video files, and in notebooks.")
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "The Python module corda: films as numpy arrays, as video files, and in notebooks; sweeps \
+of a scene as labelled data sets.")
 include(CPack)

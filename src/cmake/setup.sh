@@ -23,7 +23,7 @@ packages=(
     libavformat-dev         # muxers and demuxers of MP4, WebM, Matroska, GIF
     libavutil-dev           # frames and error texts of the two above
     libx264-dev             # H.264 with hints on unchanged macroblocks, which libavcodec cannot pass on
-    zlib1g-dev              # masks in the .npz files of sweeps, and long scenes in pictures and videos
+    zlib1g-dev              # long scenes in pictures and videos
     libeigen3-dev           # sparse factorisation for nets of bars
     libcairo2-dev           # stills as PDF and SVG
     libfreetype-dev         # glyphs of text in pictures
@@ -55,7 +55,7 @@ if [[ "${1:-build}" != build ]]; then
         librsvg2-bin        # a second opinion on SVG: rsvg-convert
         poppler-utils       # a second opinion on PDF: pdftoppm
         python3-pytest      # the tests of the Python module
-        python3-matplotlib  # its plots and reports
+        python3-matplotlib  # its plots and reports, figures of sweeps
         python3-pytest-xdist  # user tests in several processes that draw
         python3-jsonschema  # a second opinion on the JSON Schema of scenes
         python3-matplotlib  # plots of the study

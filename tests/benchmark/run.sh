@@ -3,7 +3,7 @@
 # Usage: tests/benchmark/run.sh video [--json] [SCENE] [--size WxH,...] [--preset NAME,...] [--encodings] ...
 #        tests/benchmark/run.sh sim [--json] [GOOGLE BENCHMARK OPTIONS]
 #        tests/benchmark/run.sh draw [--json] [GOOGLE BENCHMARK OPTIONS]
-#        tests/benchmark/run.sh sweep [--json] [GOOGLE BENCHMARK OPTIONS]
+#        tests/benchmark/run.sh sweep [--json] [--samples N]
 #        tests/benchmark/run.sh long [PERIODS]
 #        tests/benchmark/run.sh study [CHAPTER ...] [--scene SCENE] [--quick] [-o FOLDER]
 #        tests/benchmark/run.sh startup [--json] [--repeats N] [--beside PROGRAM]
@@ -24,16 +24,19 @@ case "$kind" in
     video) programs=(video) ;;
     sim) programs=(relaxation rattle exact nets long_ropes) ;;
     draw) programs=(pipeline) ;;
-    sweep) programs=(sweep) ;;
     long) programs=(long_runs) ;;
     study) programs=(study) ;;
-    startup) programs=() ;;
+    startup | sweep) programs=() ;;
     *) sed -n '2,17s/^# \?//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac
 cd "$root"
 [[ -f "$build/build.ninja" ]] || cmake --preset ci >/dev/null
 cmake --build "$build" --target corda "${programs[@]/#/benchmark_}" >&2
 
+if [[ "$kind" == sweep ]]; then
+    cmake --build "$build" --target corda_python >&2
+    PYTHONPATH=$build/python exec /usr/bin/python3 tests/benchmark/sweep.py "$@"
+fi
 if [[ "$kind" == startup ]]; then exec python3 tests/benchmark/startup.py "$build/corda" examples "$@"; fi
 if [[ "$kind" == long ]]; then exec "$build/tests/benchmark_long_runs" "$@"; fi
 if [[ "$kind" == study ]]; then exec python3 tests/benchmark/study.py --program "$build/tests/benchmark_study" "$@"; fi

@@ -19,7 +19,7 @@ ip link set lo up
 ip address add 10.0.0.1/32 dev lo  # with 127.0.0.1 alone, getaddrinfo() finds no name
 mkdir "$work"/{state,spool,shared}
 export SLURM_CONF=$work/slurm.conf RUNS=$work/runs PATH=$root/tests/cluster:$PATH
-export CORDA_PROGRAM=$build/corda FOREIGN_FAULTS=$build/tests/libforeign_faults.so HELD="--frames 90:180"
+export PYTHONPATH=$build/python CORDA_PROGRAM=$build/corda FOREIGN_FAULTS=$build/tests/libforeign_faults.so HELD="--frames 90:180"
 
 # Requeued tasks wait until the credentials of their first run expire.
 cat >"$SLURM_CONF" <<END
@@ -72,7 +72,7 @@ lines() { sed -n '/^## Slurm/,/^## Dask/p' "$root/examples/cluster/README.md" | 
 cd "$work/shared"
 cp "$root"/tests/cluster/*.toml .
 "$CORDA_PROGRAM" render swing.toml -o alone/%06d.png -q
-"$CORDA_PROGRAM" sweep sweep.toml -o alone_clips -q
+/usr/bin/python3 -m corda sweep sweep.toml -o alone_clips -q
 
 job=$(eval "$(lines 3 3 | sed 's/sbatch /sbatch --parsable /')")
 wait_for test -e frames/000090.png

@@ -19,7 +19,7 @@ HERE = pathlib.Path(__file__).parent
 PAGE = (pathlib.Path(os.environ["CORDA_EXAMPLES"]) / "cluster" / "README.md").read_text()
 # The first file that the task makes that is killed.
 FIRST_FILE = {"clips": "clips/shard-000001.tar", "frames": "frames/000090.png"}
-ALONE = {"clips": "corda sweep sweep.toml -o alone -q", "frames": "corda render swing.toml -o alone/%06d.png -q"}
+ALONE = {"clips": "python3 -m corda sweep sweep.toml -o alone -q", "frames": "corda render swing.toml -o alone/%06d.png -q"}
 
 
 def block(heading, language):
@@ -86,7 +86,7 @@ def test_dask_runs_the_task_of_a_killed_worker_again(work, monkeypatch):
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster:
         monkeypatch.setenv("DASK_SCHEDULER_ADDRESS", cluster.scheduler_address)
         script = "\n".join(block("Dask", "python"))
-        engine = work.start(["bash", "-euc", '"$0" -c "$1" && corda sweep sweep.toml -o clips', sys.executable, script])
+        engine = work.start(["bash", "-euc", '"$0" -c "$1" && python3 -m corda sweep sweep.toml -o clips', sys.executable, script])
         task = work.wait_for_held_task(engine, option, "clips")
         worker = int(pathlib.Path(f"/proc/{task}/stat").read_text().split()[3])
         for process in (worker, task):  # as if their machine failed

@@ -107,6 +107,8 @@ TEST_F(Killed, WhatWasRemovedNamesWhatReplacesIt) {
               "the command \"join\" was removed; join videos by ffmpeg"},
              {{"study", scene_, "-o", "a"},
               "the command \"study\" was removed; run python3 tests/benchmark/study.py"},
+             {{"sweep", "sweep.toml", "-o", "data"},
+              "the command \"sweep\" was removed; use python3 -m corda sweep"},
              {{"render", scene_, "-o", "a.mp4", "--shard", "0/2"},
               "the option --shard was removed; give each"},
              {{"render", scene_, "-o", "a.mp4", "--verify=full"},

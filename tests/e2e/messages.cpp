@@ -82,7 +82,6 @@ render DIR/none.toml -o DIR/a.mp4 | 6 | none.toml
 still DIR/none.toml --at 0 -o DIR/a.png | 6 | none.toml
 simulate DIR/none.toml | 6 | none.toml
 compare DIR/a.png DIR/b.png | 6 | a.png
-sweep DIR/none.toml -o DIR/out | 6 | none.toml: cannot read the sweep file:
 simulate SCENE -o DIR/a.npy | 2 | give such a name, or - for CSV on standard output | a.npy => a.csv ; DIR/a.npy => - ; DIR/a.npy => /dev/null
 still SCENE --at 0 -o DIR/a.v2 --dry-run | 2 | stills are written as .png, .svg or .pdf; give such a name, or a folder (ending with / if its name has a dot) | a.v2 => a.png ; a.v2 => a.svg ; a.v2 => a.pdf ; a.v2 => a ; a.v2 => a.v2/
 still SCENE --at 0 -o {DIR/x.eps,DIR/x.jpg,-} | 2 | .png

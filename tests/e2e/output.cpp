@@ -182,23 +182,6 @@ TEST_F(Output, SimulateWritesTheTensionsThatAMethodKnowsAndWarnsOfTheRest) {
                                                 "0;0;0;0;-1;0;0;0;-1;;9,81"));
 }
 
-TEST_F(Output, SimulateWritesArraysOfNumpy) {
-    const std::string npz = folder_.file("out.npz");
-    const auto result = run_corda({"simulate", scene_, "-o", npz, "--velocity", "--energy"});
-    ASSERT_EQ(result.exit_code, 0) << result.err;
-    const std::string bytes = test::read_file(npz);
-    EXPECT_THAT(bytes, HasSubstr("times.npy"));
-    // Both ends, as in the CSV.
-    EXPECT_THAT(bytes, HasSubstr("{'descr': '<f8', 'fortran_order': False, 'shape': (21, 40, 2), }"));
-    EXPECT_THAT(bytes, HasSubstr("velocities.npy"));
-    EXPECT_THAT(bytes, HasSubstr("'shape': (21, 3), }"));
-    for (const char* const option : {"--decimal=comma", "--diagnostics"}) {
-        const auto refused = run_corda({"simulate", scene_, "-o", npz, "--force", option});
-        EXPECT_EQ(refused.exit_code, 2);
-        EXPECT_THAT(refused.err, HasSubstr("are for .csv"));
-    }
-}
-
 TEST_F(Output, AutoReportsItsBoundAndPlanSaysWhy) {
     const std::string chaotic = folder_.write(
         "chaotic.toml", "schema = 1\n[[rope]]\nhang = { links = 10, length = 1.0, angle_deg = 90.0 }\n");

@@ -28,7 +28,8 @@ if [[ -z "${CORDA_TEST_LONG:-}" ]]; then
     PYTHONPATH="$work/root/usr/lib/python3/dist-packages" /usr/bin/python3 -c "
 import corda
 film = corda.Film('$scene', size=(320, 180))
-assert corda.compare(film.frame(3), '$work/still.png').equal"
+assert corda.compare(film.frame(3), '$work/still.png').equal
+assert corda.Sweep('$(dirname "$scene")/sweep/clips.toml')[7]['frames'].shape == (60, 64, 64, 4)"
     cp -r "$here/pytest" "$work/pytest"
     (   # an outside project
         cd "$work/pytest"

@@ -1,4 +1,4 @@
-"""Samples of a sweep in Python: the data of `corda sweep` and of Film, and their physics."""
+"""corda.Sweep: a sequence of samples, with the data of the shards and of Film, and their physics."""
 
 import fractions
 import io
@@ -6,6 +6,7 @@ import json
 import math
 import os
 import pathlib
+import pickle
 import shutil
 import signal
 import subprocess
@@ -77,7 +78,7 @@ def film_of(sample, scene):
 
 def test_a_sample_is_the_film_of_its_parameters(tmp_path):
     path = write(tmp_path, ROPE, "samples = 4\nseed = 3" + VARY + "[split]\ntrain = 0.5\ntest = 0.5")
-    samples = list(corda.sweep(path))
+    samples = list(corda.Sweep(path))
     assert [sample["key"] for sample in samples] == ["000000", "000001", "000002", "000003"]
     assert len({sample["parameters"]["rope[0].mass"] for sample in samples}) == 4
     for sample in samples:
@@ -97,10 +98,10 @@ def test_a_sample_is_the_film_of_its_parameters(tmp_path):
     sample["mask"][:] = 7  # arrays are the caller's
 
 
-def test_samples_are_those_of_the_shards_of_the_program(tmp_path):
+def test_samples_are_those_of_the_shards(tmp_path):
     path = write(tmp_path, ROPE, "samples = 7\nshard_samples = 2\n" + VARY + '[output]\npictures = "npz"')
-    subprocess.run([PROGRAM, "sweep", path, "-o", tmp_path / "shards"], check=True, capture_output=True)
-    yielded = [sample for index in range(3) for sample in corda.sweep(path, shard=(index, 3))]
+    assert corda.sweep.main([str(path), "-o", str(tmp_path / "shards"), "--jobs", "1", "-q"]) == 0
+    yielded = [sample for index in range(3) for sample in corda.Sweep(path).shard(index, 3)]
     assert [sample["sample"] for sample in yielded] == [0, 1, 6, 2, 3, 4, 5]  # shards 0 and 3, 1, 2
     written = {}
     for shard in sorted((tmp_path / "shards").glob("*.tar")):
@@ -124,7 +125,7 @@ def test_samples_are_those_of_the_shards_of_the_program(tmp_path):
 
 def test_a_sample_has_the_arrays_that_the_file_names(tmp_path):
     output = '[output]\npictures = "none"\nlabels = ["energy"]\nsummary = ["period_s"]'
-    (sample,) = corda.sweep(write(tmp_path, ROPE, "samples = 1" + VARY + output))
+    (sample,) = corda.Sweep(write(tmp_path, ROPE, "samples = 1" + VARY + output))
     assert {name for name, value in sample.items() if isinstance(value, np.ndarray)} == {"times", "energy"}
     assert set(sample["summary"]) == {"period_s"}
     assert sample["split"] is None
@@ -134,35 +135,83 @@ def test_a_refused_sample_is_left_out_with_a_warning(tmp_path):
     path = write(tmp_path, ROPE, 'grid = true\n[vary]\n"rope[0].mass" = [1.0, -1.0, 2.0]')
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        assert [sample["sample"] for sample in corda.sweep(path)] == [0, 2]
+        assert [sample["sample"] for sample in corda.Sweep(path)] == [0, 2]
     (warning,) = caught
-    assert "sample 000001 is left out: " in str(warning.message) and "rope[0].mass: -1" in str(warning.message)
+    assert f"{path}: sample 000001: vary rope[0].mass=-1: rope[0].mass: -1 is not" in str(warning.message)
     assert warning.filename == __file__
 
 
 @pytest.mark.parametrize("shard, error, words", [
-    ((2, 2), corda.Error, r"shard: takes \(index, count\) with 0 <= index < count, not \(2, 2\)"),
-    ((-1, 2), corda.Error, "^shard: "), ((0, 0), corda.Error, "^shard: "), (3, TypeError, "^shard: takes two integers"),
-    ((0.0, 2), TypeError, "^shard: "), ((0, 1, 2), TypeError, "^shard: "),
+    ((2, 2), corda.Error, "shard: takes index and count with 0 <= index < count, not 2 and 2"),
+    ((-1, 2), corda.Error, "^shard: "), ((0, 0), corda.Error, "^shard: "), ((0.0, 2), TypeError, "^shard: takes two integers"),
 ])
 def test_a_wrong_shard_is_refused_at_once(tmp_path, shard, error, words):
     path = write(tmp_path, ROPE, "samples = 1" + VARY)
     with pytest.raises(error, match=words):
-        corda.sweep(path, shard=shard)
+        corda.Sweep(path).shard(*shard)
 
 
 def test_a_wrong_file_is_refused_at_once(tmp_path):
     with pytest.raises(corda.Error, match="missing.toml") as missing:
-        corda.sweep(tmp_path / "missing.toml")
+        corda.Sweep(tmp_path / "missing.toml")
     assert missing.value.code == 6
     with pytest.raises(corda.Error, match='unknown key "sample"; did you mean "samples"') as unknown:
-        corda.sweep(write(tmp_path, ROPE, "sample = 1" + VARY))
+        corda.Sweep(write(tmp_path, ROPE, "sample = 1" + VARY))
     assert unknown.value.code == 3
+
+
+def test_a_sweep_is_a_sequence(tmp_path):
+    sweep = corda.Sweep(write(tmp_path, ROPE, "samples = 7\nshard_samples = 2\nseed = 5" + VARY))
+    assert len(sweep) == 7 and repr(sweep).startswith("<corda.Sweep of 7 samples of ")
+    in_order = list(sweep)
+    for i in (6, 2, -1, np.int64(3)):  # in any order
+        assert_equal(sweep[i], in_order[i])
+        assert sweep.parameters(i) == in_order[i]["parameters"]
+    for part in (slice(2, 5), slice(None, None, 3), slice(5, None, -2)):
+        assert len(sweep[part]) == len(in_order[part])
+        assert [sample["sample"] for sample in sweep[part]] == [sample["sample"] for sample in in_order[part]]
+    assert sweep[2:5][-1]["sample"] == 4 and sweep[2:5][1:][0]["sample"] == 3
+    for index in (7, -8):
+        with pytest.raises(IndexError, match=f"there is no sample {index}: the sweep has 7"):
+            sweep[index]
+    for index in ("1", 1.0, None):
+        with pytest.raises(TypeError, match="a sample has a whole number"):
+            sweep[index]
+    assert_equal(pickle.loads(pickle.dumps(sweep))[3], in_order[3])
+
+
+def test_shards_are_sequences_that_divide_the_samples(tmp_path):
+    sweep = corda.Sweep(write(tmp_path, ROPE, "samples = 1_000_000_000\nshard_samples = 256" + VARY))
+    shards = [sweep.shard(i, 7) for i in range(7)]  # of a sweep too long for a list
+    assert sum(map(len, shards)) == 1_000_000_000
+    numbers = [shards[2][i]["sample"] for i in (0, 1, 255, 256, -1)]
+    assert numbers == [512, 513, 767, 2304, numbers[-1]] and numbers[-1] // 256 % 7 == 2
+    small = sweep[100:1100]
+    parts = [list(small.shard(i, 3)._numbers) for i in range(3)]
+    assert sorted(sum(parts, [])) == list(range(100, 1100))
+    assert all(number // 256 % 3 == i for i in range(3) for number in parts[i])
+    assert list(small[::5].shard(1, 3)._numbers) == [number for number in range(100, 1100, 5) if number // 256 % 3 == 1]
+    assert list(small.shard(1, 3)[3:9:2]._numbers) == parts[1][3:9:2]
+
+
+def test_a_refused_sample_raises_if_it_is_asked_for(tmp_path):
+    path = write(tmp_path, ROPE, 'grid = true\n[vary]\n"rope[0].mass" = [1.0, -1.0, 2.0]')
+    sweep = corda.Sweep(path)
+    with pytest.raises(corda.Error, match="sweep.toml: sample 000001: vary rope.0..mass=-1: ") as refused:
+        sweep[1]
+    assert refused.value.code == 3
+    assert list(sweep.failures) == [1] and "rope[0].mass" in sweep.failures[1]
+
+
+def assert_equal(sample, other):
+    assert list(sample) == list(other)
+    for name, value in sample.items():
+        assert np.array_equal(value, other[name], equal_nan=True) if isinstance(value, np.ndarray) else value == other[name], name
 
 
 def sums_of(path, shard):
     return {sample["key"]: (int(sample["frames"].sum()), float(sample["positions"].sum()))
-            for sample in corda.sweep(path, shard=shard)}
+            for sample in corda.Sweep(path).shard(*shard)}
 
 
 @pytest.mark.parametrize("method", ["fork", "spawn"])
@@ -189,16 +238,16 @@ def test_ctrl_c_ends_a_sample_while_other_threads_run(tmp_path):
     timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))  # runs only without the interpreter's lock
     with pytest.raises(KeyboardInterrupt):
         timer.start()
-        next(corda.sweep(path))
+        corda.Sweep(path)[0]
 
 
 def test_masks_are_the_silhouettes_of_the_drawn_bodies(tmp_path):
     style = 'halo = false\npayload = PAYLOAD\npalette = ["#ffffff"]\n[overlay]\ntime = false\nscale_bar = false\n[video]'
     scene = ROPE.replace("[video]", '[style]\nbackground = "#000000"\nsupports = false\n' + style)
-    for sample in corda.sweep(write(tmp_path, scene.replace("PAYLOAD", "false"), "samples = 6" + VARY)):
+    for sample in corda.Sweep(write(tmp_path, scene.replace("PAYLOAD", "false"), "samples = 6" + VARY)):
         assert np.array_equal(sample["mask"] == 1, sample["frames"][..., 0] >= 128)
     # A pixel of which a ball and its outline each cover less than half gets at most 3/4 of their brightness.
-    for sample in corda.sweep(write(tmp_path, scene.replace("PAYLOAD", "true"), "samples = 6" + VARY)):
+    for sample in corda.Sweep(write(tmp_path, scene.replace("PAYLOAD", "true"), "samples = 6" + VARY)):
         brightness, drawn = sample["frames"][..., 0], sample["mask"] == 1
         assert brightness[drawn].min() >= 128
         assert brightness[~drawn].max() < 192
@@ -237,7 +286,7 @@ seed = 5
 [output]
 labels = ["pixels"]
 """)
-    for sample in corda.sweep(path):
+    for sample in corda.Sweep(path):
         error = tracked_gravity(sample) / sample["parameters"]["world.gravity"] - 1.0
         assert abs(error) < 1e-3  # measured 4.0e-4
         places = np.stack(centroid(sample["frames"]), axis=1)
@@ -253,7 +302,7 @@ def test_energy_and_tension_are_those_of_a_point_pendulum(tmp_path):
 pictures = "none"
 """)
     places = np.loadtxt(A01)  # R1: x and y at 0.5 s, 1 s, ...
-    for sample in corda.sweep(path):
+    for sample in corda.Sweep(path):
         place = places[: len(sample["times"]) - 1]
         weight = 9.81 * sample["parameters"]["rope[0].mass"]
         kinetic, potential, total = sample["energy"][1:].T / weight
@@ -319,7 +368,7 @@ seed = 11
 pictures = "none"
 labels = ["positions"]
 """)
-    samples = list(corda.sweep(path))
+    samples = list(corda.Sweep(path))
     assert len(samples) == 200
     for links in (1, 2, 3):
         alike = [sample for sample in samples if sample["parameters"]["rope[0].hang.links"] == links]
@@ -346,7 +395,8 @@ def clips(tmp_path_factory):
     shutil.copy(EXAMPLES / "clip.toml", folder)
     sweep = (EXAMPLES / "clips.toml").read_text().replace("samples = 2000", "samples = 40")
     (folder / "clips.toml").write_text(sweep.replace("shard_samples = 100", "shard_samples = 5"))
-    subprocess.run([PROGRAM, "sweep", folder / "clips.toml", "-o", folder / "shards"], check=True, capture_output=True)
+    subprocess.run([sys.executable, "-m", "corda", "sweep", folder / "clips.toml", "-o", folder / "shards"], check=True,
+                   capture_output=True)
     return folder
 
 
@@ -357,16 +407,16 @@ def lines_of_example(name, path):
 
 
 @pytest.mark.long
-def test_a_data_loader_forks_workers_that_make_all_clips(clips):
+def test_the_workers_of_a_data_loader_make_all_clips(clips):
     lines = lines_of_example("torch_clips.py", clips / "clips.toml")
-    assert len(lines) == 6  # of 2 workers, each with 20 clips in batches of 8
+    assert len(lines) == 5  # batches of 8
     made = []
     for line in lines:
         shapes, _, gravity = line.rpartition(" [")
         gravity = json.loads("[" + gravity)
         assert shapes == f"({len(gravity)}, 60, 3, 64, 64) ({len(gravity)}, 60, 2)"
         made += gravity
-    expected = [sample["parameters"]["world.gravity"] for sample in corda.sweep(clips / "clips.toml")]
+    expected = [sample["parameters"]["world.gravity"] for sample in corda.Sweep(clips / "clips.toml")]
     assert sorted(made) == sorted(expected)
 
 

@@ -93,7 +93,7 @@ inline constexpr std::array<ExitCodeText, 13> kExitCodes{{
     {ExitCode::kNoGl, "no usable OpenGL"},
     {ExitCode::kEncoder, "codec missing or encoder failed"},
     {ExitCode::kIo, "input/output error, disk full, or output exists (see --force)"},
-    {ExitCode::kMismatch, "compare, golden, join or sweep --check found a problem"},
+    {ExitCode::kMismatch, "compare or golden found a difference or a problem"},
     {ExitCode::kDiverged, "the simulation diverged"},
     {ExitCode::kTemporary, "out of memory, or another temporary failure: try again"},
     {ExitCode::kHungUp, "hung up (SIGHUP): the terminal closed; finished work is kept"},

@@ -83,7 +83,7 @@ ExitCode write_scene(const Console& console, const InitOptions& options) {
     const std::string stem = path.substr(0, path.size() - std::string_view(".toml").size());
     console.info(scene.empty() ? fmt::format("example {}; draw it with: corda render {} -o {}.mp4",
                                              example.name, path, stem)
-                               : fmt::format("example {}; make its samples with: corda sweep {} -o {}",
+                               : fmt::format("example {}; make its samples with: python3 -m corda sweep {} -o {}",
                                              example.name, path, stem));
     nlohmann::json outputs = nlohmann::json::array();
     for (const auto& [file_path, text] : files) {

@@ -15,8 +15,6 @@
 #include "corda/core/text.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/plan_text.hpp"
-#include "corda/sweep/archive.hpp"
-#include "corda/sweep/labels.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -177,24 +175,6 @@ void write_states(const Console& console, Film& film, const SimulateOptions& opt
     }
 }
 
-/// The states of all frame times as arrays of NumPy, with the names that sweeps use.
-std::string states_npz(const Console& console, Film& film, const Columns& columns) {
-    std::vector<const sweep::Label*> labels;
-    const auto add = [&](const char* name, bool is_wanted) {
-        if (is_wanted) labels.push_back(sweep::find_label(name));
-    };
-    add("times", true);
-    add("positions", true);
-    add("velocities", columns.velocities);
-    add("tensions", columns.tensions);
-    add("energy", columns.energy);
-    const std::int64_t count = film.last_frame() + 1;
-    Progress progress(console, "simulate", count);
-    const auto arrays = sweep::read_labels(
-        film, labels, count, [&, k = std::int64_t{0}](const State&) mutable { progress.update(++k); });
-    return sweep::npz_bytes(arrays, "write .csv, or fewer frames (--fps, --duration)");
-}
-
 /// Warns of bodies whose tensions are missing.
 void warn_of_tensions(const Console& console, Film& film) {
     const System& system = film.system();
@@ -217,27 +197,19 @@ void warn_of_tensions(const Console& console, Film& film) {
     }
 }
 
-bool is_npz(const std::string& output) {
-    return std::filesystem::path(output).extension() == ".npz";
-}
-
 /// Refuses an ending that is not known; a device such as /dev/null needs none.
 void check_ending(const std::string& output) {
     const std::filesystem::path path(output);
     std::error_code ignored;
     const bool is_device =
         std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
-    if (output.empty() || is_standard_output(output) || path.extension() == ".csv" || is_npz(output) ||
-        is_device)
-        return;
-    throw_usage(
-        "-o {}: states are written as .csv or .npz; give such a name, or - for CSV on standard output",
-        output);
+    if (output.empty() || is_standard_output(output) || path.extension() == ".csv" || is_device) return;
+    throw_usage("-o {}: states are written as .csv; give such a name, or - for CSV on standard output{}",
+                output, path.extension() == ".npz" ? "; for arrays of NumPy, use corda.Film in Python" : "");
 }
 
 /// Simulates the motion and writes it, if there is an output.
 void write_output(const Console& console, Film& film, const SimulateOptions& options) {
-    const bool to_npz = is_npz(options.output);
     std::unique_ptr<OutputFile> file;
     if (!options.output.empty()) {
         file = std::make_unique<OutputFile>(options.output, OutputOptions{.force = options.force});
@@ -248,13 +220,10 @@ void write_output(const Console& console, Film& film, const SimulateOptions& opt
     }
     try {
         if (options.columns.tensions) warn_of_tensions(console, film);
-        if (to_npz)
-            file->write(states_npz(console, film, options.columns));
-        else
-            write_states(console, film, options, file.get());
+        write_states(console, film, options, file.get());
     } catch (const Error& error) {
         const bool ends_early = error.code() == ExitCode::kDiverged || error.code() == interruption();
-        if (!file || to_npz || !ends_early) throw;
+        if (!file || !ends_early) throw;
         const std::string kept = file->keep();
         if (is_standard_output(options.output)) throw;
         throw_error(error.code(), "{}; the rows before it are in {}", error.what(), kept);
@@ -268,11 +237,6 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
         throw Error(ExitCode::kUsage, "-o - and --json both want standard output; give the CSV a file name");
     }
     check_ending(options.output);
-    const bool to_npz = is_npz(options.output);
-    if (to_npz && (options.style != CsvStyle::kPoint || options.columns.diagnostics)) {
-        throw_usage("-o {}: --decimal and --diagnostics are for .csv; leave them out, or give such a name",
-                    options.output);
-    }
     if (options.output.empty() && (options.columns != Columns() || options.style != CsvStyle::kPoint))
         console.warning(
             "--velocity, --tension, --energy, --diagnostics and --decimal change the file of -o "
@@ -316,10 +280,8 @@ void add_simulate(CLI::App& app, Action& action) {
     options.scene.add_to(command);
     command.add_option(
         "-o,--output", options.output,
-        "CSV or .npz file, or - for CSV on standard output; none: figures only. The first line "
-        "of CSV names the columns: t in s, x0, y0, ... in m, after the label of a rope or net that has one. "
-        "The arrays of .npz are times in s, positions in m and, as asked for, velocities in m/s, tensions in "
-        "N and energy in J: kinetic, potential and their sum");
+        "CSV file, or - for standard output; none: figures only. The first line names the columns: t in s, "
+        "x0, y0, ... in m, after the label of a rope or net that has one");
     options.scene.add_timing(command, "rows per second");
     command.add_flag("--velocity", options.columns.velocities,
                      "add the velocity of every particle: vx0_m_s, vy0_m_s, ...");

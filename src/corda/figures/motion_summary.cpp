@@ -10,9 +10,9 @@
 
 #include "corda/core/cancel.hpp"
 #include "corda/core/timeline.hpp"
+#include "corda/figures/summary.hpp"
 #include "corda/reference/pendulum.hpp"
 #include "corda/sim/recording.hpp"
-#include "corda/sweep/summary.hpp"
 
 namespace corda::figures {
 namespace {
@@ -195,7 +195,7 @@ class Reader {
 
     Film& film_;
     const System& system_;
-    sweep::SummaryReader swing_;
+    SummaryReader swing_;
     MotionSummary motion_;
     OnRow tip_;
     OnRow energy_;

@@ -59,7 +59,7 @@ struct MotionSummary {
     Extreme speed;
     std::vector<std::size_t> unknown_tensions;  ///< bodies whose method told none, ascending
     std::vector<double> tensions_n;             ///< of the links of the body with the largest, at its time
-    std::vector<double> periods_s;              ///< of the first body (sweep::SummaryReader)
+    std::vector<double> periods_s;              ///< of the first body (SummaryReader)
     std::optional<double> angle_max_deg;        ///< of the first body
     /// kDiverged: why there are no more rows.
     std::optional<Error> failure;

@@ -15,7 +15,6 @@ extern "C" {
 #include <libavutil/log.h>
 #include <libavutil/mathematics.h>
 #include <libavutil/pixdesc.h>
-#include <libavutil/sha.h>
 }
 
 #include <cstdint>

@@ -7,9 +7,9 @@
 namespace corda::python {
 
 py::array_t<double> label(PyFilm& film, const char* name, bool needs_fields) {
-    const sweep::Label* const label = sweep::find_label(name);
+    const Label* const label = find_label(name);
     const auto read = [&](Film& shown) {
-        return sweep::read_labels(shown, std::span(&label, 1), shown.frame_count());
+        return read_labels(shown, std::span(&label, 1), shown.frame_count());
     };
     auto arrays = needs_fields ? film.with_fields(read) : film.with_film(read);
     return to_numpy<double>(std::move(arrays.front()));

@@ -3,8 +3,6 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include <corda/sweep/labels.hpp>
-
 #include <corda/pipeline/film.hpp>
 
 #include <unistd.h>
@@ -19,6 +17,8 @@
 #include <string>
 #include <thread>
 #include <utility>
+
+#include "labels.hpp"
 
 namespace corda::python {
 
@@ -270,7 +270,7 @@ class PyFilm : NonCopyable {
 
 /// Hands the numbers of an array to numpy, which frees them.
 template <class Number>
-py::array_t<Number> to_numpy(sweep::Array array) {
+py::array_t<Number> to_numpy(Array array) {
     auto owned = std::make_unique<std::string>(std::move(array.data));
     const std::vector<py::ssize_t> shape(array.shape.begin(), array.shape.end());
     const auto* const numbers = reinterpret_cast<const Number*>(owned->data());
@@ -281,7 +281,7 @@ py::array_t<Number> to_numpy(sweep::Array array) {
 
 // Arrays of a film's frames: see the properties of the same names in corda/__init__.py.
 
-/// A label of float64 (see sweep/labels.hpp). `needs_fields`: it needs velocities or tensions.
+/// A label of float64 (see labels.hpp). `needs_fields`: it needs velocities or tensions.
 [[nodiscard]] py::array_t<double> label(PyFilm& film, const char* name, bool needs_fields);
 [[nodiscard]] py::array_t<double> times(const PyFilm& film);
 [[nodiscard]] py::array_t<std::uint8_t> mask(PyFilm& film, std::int64_t k);

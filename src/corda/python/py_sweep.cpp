@@ -1,59 +1,210 @@
-// Samples of a sweep, for corda.sweep() of corda/__init__.py.
-#include <corda/sweep/sample.hpp>
+// The films of the samples of a sweep, and what its file is checked against: for corda/sweep.py.
+#include <corda/media/format/format.hpp>
+#include <corda/pipeline/film_renderer.hpp>
+#include <corda/pipeline/plan_text.hpp>
+#include <corda/pipeline/tracked_particle.hpp>
+#include <corda/scene/document.hpp>
+#include <corda/scene/schema.hpp>
 
-#include <optional>
+#include <pybind11/stl.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <numeric>
 #include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "py_film.hpp"
 
 namespace corda::python {
 namespace {
 
-/// A sweep whose pictures are arrays. One thread at a time may use it.
-class PySweep : NonCopyable {
+/// Draws films on one thread, and keeps its OpenGL canvas between them.
+class PyPainter : NonCopyable {
   public:
-    explicit PySweep(const std::string& path)
-        : sweep_(Asking().run([&] { return sweep::load_sweep(path); })), maker_(std::in_place, sweep_) {
-        if (sweep_.pictures != sweep::Pictures::kNone) sweep_.pictures = sweep::Pictures::kNpz;
-    }
-    ~PySweep() {
+    PyPainter() = default;
+    ~PyPainter() {
         const Calls::Scope call;
-        maker_.reset();
+        canvas_.reset();
     }
 
-    [[nodiscard]] std::int64_t samples() const { return sweep_.samples; }
-    [[nodiscard]] std::int64_t shard_samples() const { return sweep_.shard_samples; }
+    /// The files that rendering the film to `name` makes: a video, or a picture per frame.
+    py::list files(PyFilm& film, const std::string& name) {
+        const auto made = film.with_film([&](Film& shown) {
+            FilmRenderer renderer(shown, &canvas());
+            return video_files(shown, renderer, name);
+        });
+        py::list all;
+        for (const std::string& file : made) all.append(py::bytes(file));
+        return all;
+    }
 
-    /// The key of a sample, its .json as text, its arrays by name, and the reason if there is no sample.
-    py::tuple sample(std::int64_t number) {
-        sweep::Sample made = Asking().run([&] { return maker_->make(number); });
-        if (made.failure)
-            return py::make_tuple(made.key, py::none(), py::none(), text_of(made.failure->message.c_str()));
-        py::dict arrays;
-        for (sweep::Array& array : made.arrays) {
-            const py::str name(array.name);
-            if (array.is_bytes)
-                arrays[name] = to_numpy<std::uint8_t>(std::move(array));
-            else
-                arrays[name] = to_numpy<double>(std::move(array));
-        }
-        return py::make_tuple(made.key, made.info.dump(), arrays, py::none());
+    /// All frames: uint8 (frames, height, width, 4).
+    py::array_t<std::uint8_t> frames(PyFilm& film) {
+        const VideoDef& video = film.constant().scene().video;
+        const std::int64_t count = film.constant().frame_count();
+        py::array_t<std::uint8_t> all(
+            {count, std::int64_t{video.height_px}, std::int64_t{video.width_px}, std::int64_t{4}});
+        std::uint8_t* to = all.mutable_data();
+        film.with_film([&](Film& shown) {
+            FilmRenderer renderer(shown, &canvas());
+            for (std::int64_t k = 0; k < count; ++k) {
+                check_cancelled();
+                renderer.draw(shown.time_s(k));
+                const Image& image = renderer.image();
+                to = std::copy_n(image.data(), image.size_bytes(), to);
+            }
+            return true;
+        });
+        return all;
     }
 
   private:
-    sweep::SweepDef sweep_;
-    std::optional<sweep::SampleMaker> maker_;
+    pipeline::OwnedCanvas& canvas() {
+        if (process_ != getpid())
+            static_cast<void>(canvas_.release());  // the parent's, which no child can use
+        process_ = getpid();
+        return canvas_;
+    }
+
+    pipeline::OwnedCanvas canvas_;
+    pid_t process_ = getpid();
 };
+
+/// The film of a scene with settings, which messages name with "vary"; its states have all fields.
+std::unique_ptr<PyFilm> sample_film(const std::string& text, const std::string& source,
+                                    const std::vector<std::string>& settings, const std::string& backend,
+                                    bool require_gpu) {
+    const Scene scene = Asking().run([&] { return parse_scene(text, source, {}, {"vary", settings}); });
+    return std::make_unique<PyFilm>(scene, backend, require_gpu, true);
+}
+
+/// Arrays of all frames by the names of labels.
+py::dict labels(PyFilm& film, const std::vector<std::string>& names) {
+    std::vector<const Label*> labels;
+    for (const std::string& name : names) labels.push_back(find_label(name));
+    auto read =
+        film.with_fields([&](Film& shown) { return read_labels(shown, labels, shown.frame_count()); });
+    py::dict arrays;
+    for (Array& array : read) {
+        const py::str name(array.name);
+        if (array.is_bytes)
+            arrays[name] = to_numpy<std::uint8_t>(std::move(array));
+        else
+            arrays[name] = to_numpy<double>(std::move(array));
+    }
+    return arrays;
+}
+
+/// Facts of a whole motion: its method, its largest strain and energy error, and the particle whose swing
+/// about `pin` is measured.
+py::dict sample_facts(PyFilm& film) {
+    const Figures largest = film.with_fields([](Film& shown) {
+        static_cast<void>(shown.camera());
+        static_cast<void>(shown.state(shown.last_frame()));
+        return shown.diagnostics().largest;
+    });
+    const auto tracked = pipeline::tracked_particles(film.constant().system());
+    py::dict facts;
+    facts["method"] = method_names(film.constant().plan());
+    facts["strain_max"] = largest.strain;
+    facts["energy_error"] = largest.energy_error;
+    facts["particle"] = tracked.empty() ? py::object(py::none()) : py::cast(tracked.front().particle);
+    facts["pin"] = tracked.empty() ? py::object(py::none()) : py::cast(tracked.front().pin);
+    return facts;
+}
+
+/// Units of the keys of a section of scenes, by name.
+py::dict scene_keys(const std::string& section) {
+    py::dict units;
+    for (const scene::Key& key : scene::keys_of(section))
+        units[py::str(std::string(key.name))] = std::string(key.unit);
+    return units;
+}
+
+/// Why a dotted key does not fit a scene, with a remedy; empty if it does.
+py::str misfit(const std::string& text, const std::string& source, const std::string& key) {
+    toml::table document = scene::parse_document(text, source);
+    return text_of(scene::misfit_of(document, key).c_str());
+}
+
+/// The poses at some times in one picture: uint8 (height, width, 4).
+py::array_t<std::uint8_t> poses(PyFilm& film, const std::vector<double>& times_s) {
+    const Image image = film.with_film([&](Film& shown) { return FilmRenderer::draw_poses(shown, times_s); });
+    return py::array_t<std::uint8_t>({image.height(), image.width(), 4}, image.data());
+}
+
+/// What theory knows the period of, from a scene alone: "point", "rod" or "rope", the number and the length
+/// in m of equal links, and the acceleration in m/s2; None for others. See period_of() in corda/_theory.py.
+py::object swing_of(const std::string& text, const std::string& source,
+                    const std::vector<std::string>& settings) {
+    const Scene scene = Asking().run([&] { return parse_scene(text, source, {}, {"vary", settings}); });
+    if (scene.ropes.size() != 1 || !scene.nets.empty()) return py::none();
+    const RopeDef& rope = scene.ropes.front();
+    Vec2 gravity = scene.world.gravity_m_s2;
+    const auto* const relaxation = std::get_if<RelaxationDef>(&scene.solver);
+    if (relaxation != nullptr && relaxation->force_n)
+        gravity = {relaxation->force_n->x / rope.mass_kg.front(),
+                   relaxation->force_n->y / rope.mass_kg.front()};
+    const bool is_plain = !rope.closed && rope.rest_m.empty() && rope.bending_n_m2 == 0.0 &&
+                          rope.material.compliance_1_n == 0.0 &&
+                          rope.pinned == std::vector<std::uint32_t>{0} && scene.world.drag_1_s == 0.0 &&
+                          gravity.x == 0.0 && gravity.y < 0.0;
+    const auto distance_m = [&](std::size_t a, std::size_t b) {
+        return std::hypot(rope.points_m[b].x - rope.points_m[a].x, rope.points_m[b].y - rope.points_m[a].y);
+    };
+    const std::size_t links = rope.points_m.size() - 1;
+    const double link_m = distance_m(0, 1);
+    for (std::size_t i = 1; i < links; ++i)
+        if (std::abs(distance_m(i, i + 1) - link_m) > 1e-9 * link_m) return py::none();
+    if (!is_plain) return py::none();
+    const double length_m = static_cast<double>(links) * link_m;
+    const bool is_straight = std::abs(distance_m(0, links) - length_m) <= 1e-9 * length_m;
+    const double own_kg = std::accumulate(rope.mass_kg.begin(), rope.mass_kg.end(), 0.0);
+    if (links == 1 || (is_straight && own_kg <= 0.01 * rope.payload_kg))
+        return py::make_tuple("point", 1, length_m, -gravity.y);
+    const bool has_equal_masses =
+        rope.payload_kg == 0.0 &&
+        std::ranges::count(rope.mass_kg, rope.mass_kg.front()) == std::ssize(rope.mass_kg);
+    if (!has_equal_masses) return py::none();
+    return py::make_tuple(rope.reach > 1 ? "rod" : "rope", links, link_m, -gravity.y);
+}
 
 }  // namespace
 
 void add_sweep(py::module_& module) {
-    py::class_<PySweep>(module, "Sweep")
-        .def(py::init<const std::string&>())
-        .def("samples", &PySweep::samples)
-        .def("shard_samples", &PySweep::shard_samples)
-        .def("sample", &PySweep::sample);
+    py::class_<PyPainter>(module, "Painter")
+        .def(py::init<>())
+        .def("files", &PyPainter::files)
+        .def("frames", &PyPainter::frames);
+    module.def("sample_film", &sample_film);
+    module.def("sample_facts", &sample_facts);
+    module.def("labels", &labels);
+    module.def("poses", &poses);
+    module.def("swing_of", &swing_of);
+    module.def("scene_keys", &scene_keys);
+    module.def("misfit", &misfit);
+    module.def("check_scene", [](const std::string& text, const std::string& source) {
+        Asking().run([&] { static_cast<void>(parse_scene(text, source)); });
+    });
+    module.def("picture_size", [](const std::string& text, const std::string& source,
+                                  const std::vector<std::string>& settings) {
+        const Scene scene = Asking().run([&] { return parse_scene(text, source, {}, {"vary", settings}); });
+        return std::pair(scene.video.width_px, scene.video.height_px);
+    });
+    // The encoder of an output, with the versions on which its bytes depend.
+    module.def("encoder_of",
+               [](const std::string& text, const std::string& source, const std::string& output) {
+                   return Asking().run([&] {
+                       return media::find_format(output, parse_scene(text, source).video).library_versions();
+                   });
+               });
 }
 
 }  // namespace corda::python

@@ -9,8 +9,8 @@
     import corda.plot         # needs matplotlib
     corda.plot.angle(film)    # and energy, phase, tip, tension, divergence
 
-    for sample in corda.sweep("sweep.toml"):    # one scene, many parameters: dictionaries of parameters and arrays
-        ...
+    sweep = corda.Sweep("sweep.toml")           # one scene, many parameters: dictionaries of parameters and arrays
+    sweep[12]["frames"], len(sweep), sweep.shard(0, 8)
 
 Coordinates are in metres, y up; times in seconds. Failures raise corda.Error, whose `code` is the exit code of
 the program (`corda --help` lists them). Pictures are arrays of RGBA bytes, sRGB, with straight alpha.
@@ -30,7 +30,6 @@ import os as _os
 import pathlib as _pathlib
 import sys as _sys
 import tempfile as _tempfile
-import warnings as _warnings
 from typing import NamedTuple as _NamedTuple
 
 import numpy as _np
@@ -52,7 +51,7 @@ except ImportError:
                       "Corda with this Python") from None
 from ._corda import Error, __version__
 
-__all__ = ["Difference", "Error", "Film", "__version__", "compare", "read_png", "sweep", "write_png"]
+__all__ = ["Difference", "Error", "Film", "Sweep", "__version__", "compare", "read_png", "write_png"]
 
 
 
@@ -432,49 +431,4 @@ def write_png(path, picture, *, force=False):
     _corda.write_png(_path(path), picture, bool(force))
 
 
-_OF_A_SAMPLE = ("key", "sample", "split", "parameters", "fps", "camera", "px_per_m", "method", "error_estimate_m",
-                "error_estimate_px", "horizon_s", "summary")
-
-
-def sweep(path, *, shard=None):
-    """The samples of a sweep file, made one after the other: an iterator over dictionaries.
-
-    shard: a pair (index, count), 0 <= index < count; only the shard files index, index + count, ... of `corda sweep`. A
-    sample is a function of the file and its number alone, so each process can make its own: in a worker of a DataLoader,
-    shard=(worker.id, worker.num_workers). Call this in the process that reads the samples.
-
-    A sample has "key", "sample" (its number), "split" (None without splits), "parameters" (a dictionary by the keys of the
-    scene), "fps" (a Fraction), "camera" (center and height in m), "px_per_m", "method", "error_estimate_m",
-    "error_estimate_px", "horizon_s" and "summary", whose unknown values are None; "times" in s; the arrays of output.labels of the file,
-    "positions", "velocities", "tensions", "energy", "pixels" and "mask", which are those of a Film for all frames; and
-    "frames", numpy uint8 of shape (frames, height, width, 4), unless output.pictures is "none". No file is written.
-
-    A sample whose scene is refused, or whose motion diverges, is left out, with a warning. Raises Error for a sweep file
-    that cannot be read. Ctrl-C ends the making of a sample.
-    """
-    index, count = (0, 1) if shard is None else _shard(shard)
-    return _samples(_corda.Sweep(_path(path)), index, count)
-
-
-def _shard(shard):
-    try:
-        index, count = map(_operator.index, shard)
-    except (TypeError, ValueError):
-        raise TypeError(f"shard: takes two integers, (index, count), not {shard!r}") from None
-    if not 0 <= index < count:
-        raise _error(f"shard: takes (index, count) with 0 <= index < count, not {shard!r}")
-    return index, count
-
-
-def _samples(made, index, count):
-    size = made.shard_samples()
-    for first in range(index * size, made.samples(), count * size):
-        for number in range(first, min(first + size, made.samples())):
-            key, text, arrays, failure = made.sample(number)
-            if failure is not None:
-                _warnings.warn(f"sample {key} is left out: {failure}", stacklevel=2)
-                continue
-            info = _json.loads(text)
-            info["fps"] = _fractions.Fraction(info["fps"])
-            info["camera"]["center"] = tuple(info["camera"]["center"])
-            yield {name: info[name] for name in _OF_A_SAMPLE} | arrays
+from .sweep import Sweep  # noqa: E402: it needs the names above

@@ -8,9 +8,9 @@
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/tracked_particle.hpp"
 
-namespace corda::sweep {
+namespace corda::figures {
 
-/// Figures of a motion at its frame times. README.md has the formulas. std::nullopt: not applicable.
+/// Figures of a motion at its frame times. src/corda/python/README.md has the formulas. std::nullopt: not applicable.
 struct Summary {
     std::optional<double> period_s;
     std::optional<double> angle_max_deg;
@@ -61,4 +61,4 @@ class SummaryReader {
     Summary summary_;
 };
 
-}  // namespace corda::sweep
+}  // namespace corda::figures

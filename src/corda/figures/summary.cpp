@@ -1,13 +1,11 @@
-#include "corda/sweep/summary.hpp"
+#include "corda/figures/summary.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
-#include "corda/sweep/random.hpp"
-
-namespace corda::sweep {
+namespace corda::figures {
 namespace {
 
 constexpr std::array<SummaryColumn, 9> kColumns{{{"period_s", &Summary::period_s},
@@ -66,7 +64,7 @@ SummaryReader::SummaryReader(Film& film) : film_(&film) {
 }
 
 double SummaryReader::Arm::angle_rad() const {
-    return angle_of(-y_m, x_m);
+    return std::atan2(x_m, -y_m);
 }
 
 double SummaryReader::Arm::rate_rad_s() const {
@@ -135,4 +133,4 @@ std::vector<double> SummaryReader::periods_s() const {
     return periods_s;
 }
 
-}  // namespace corda::sweep
+}  // namespace corda::figures

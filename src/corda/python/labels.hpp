@@ -9,7 +9,7 @@
 
 #include "corda/pipeline/film.hpp"
 
-namespace corda::sweep {
+namespace corda::python {
 
 /// Numbers of a film, in C order and little endian.
 struct Array {
@@ -40,4 +40,4 @@ struct Label {
                                              std::int64_t frames,
                                              const std::function<void(const State&)>& visit = {});
 
-}  // namespace corda::sweep
+}  // namespace corda::python

@@ -1,4 +1,4 @@
-#include "corda/sweep/labels.hpp"
+#include "labels.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 
 #include "corda/core/cancel.hpp"
 
-namespace corda::sweep {
+namespace corda::python {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "arrays are little endian");
@@ -101,4 +101,4 @@ std::vector<Array> read_labels(Film& film, std::span<const Label* const> labels,
     return arrays;
 }
 
-}  // namespace corda::sweep
+}  // namespace corda::python
