@@ -55,10 +55,9 @@ if [[ "${1:-build}" != build ]]; then
         librsvg2-bin        # a second opinion on SVG: rsvg-convert
         poppler-utils       # a second opinion on PDF: pdftoppm
         python3-pytest      # the tests of the Python module
-        python3-matplotlib  # its plots and reports, figures of sweeps
         python3-pytest-xdist  # user tests in several processes that draw
         python3-jsonschema  # a second opinion on the JSON Schema of scenes
-        python3-matplotlib  # plots of the study
+        python3-matplotlib  # plots, reports and sweeps of the module, and the study
         mandoc              # checks the manual page
         zsh                 # checks its completion
         fish                # the same

@@ -25,7 +25,7 @@ TEST(Help, EqualsTheHelpOption) {
     EXPECT_EQ(still.exit_code, 0);
     EXPECT_EQ(still.out, run_corda({"still", "--help"}).out);
     EXPECT_THAT(still.out, HasSubstr("--at"));
-    EXPECT_THAT(run_corda({"help", "report"}).out, HasSubstr("write the figures that a paper needs"));
+    EXPECT_THAT(run_corda({"help", "sheet"}).out, HasSubstr("draw a contact sheet"));
 }
 
 TEST(Help, ListsTheKeysOfAScene) {

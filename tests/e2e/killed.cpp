@@ -103,6 +103,8 @@ TEST_F(Killed, WhatWasRemovedNamesWhatReplacesIt) {
     for (const auto& [arguments, words] : std::vector<std::pair<std::vector<std::string>, std::string>>{
              {{"recover", "a.mp4.parts"},
               "the command \"recover\" was removed; render a long film as pictures"},
+             {{"report", scene_, "-o", "a"},
+              "the command \"report\" was removed; use python3 -m corda report"},
              {{"join", "a.mp4", "b.mp4", "-o", "c.mp4"},
               "the command \"join\" was removed; join videos by ffmpeg"},
              {{"study", scene_, "-o", "a"},

@@ -53,8 +53,6 @@ TEST_F(Unreachable, OutputsAreNamed) {
         {{"simulate", scene_, "-o"}, "/a.csv"},
         {{"render", scene_, "-o"}, "/a.mp4"},
         {{"render", scene_, "--dry-run", "-o"}, "/%04d.png"},
-        {{"report", scene_, "-o"}, "/a"},
-        {{"report", scene_, "--dry-run", "-o"}, "/a"},
         {{"golden", scene_, "--update", "--dir"}, "/a"},
         {{"init"}, "/a.toml"},
     };

@@ -26,12 +26,12 @@ using Action = std::function<ExitCode(const Console&)>;
 /// Adds one subcommand to `app`; parsing it sets `action`.
 using AddCommand = void(CLI::App& app, Action& action);
 AddCommand add_render, add_still, add_strobe, add_sheet, add_simulate, add_compare, add_golden, add_watch,
-    add_doctor, add_plan, add_report, add_init, add_examples, add_schema, add_completion, add_help;
+    add_doctor, add_plan, add_init, add_examples, add_schema, add_completion, add_help;
 
 /// The subcommands in the order of `corda --help`.
 inline constexpr AddCommand* kCommands[] = {
-    add_render, add_still, add_strobe, add_sheet, add_simulate, add_compare, add_golden,     add_watch,
-    add_doctor, add_plan,  add_report, add_init,  add_examples, add_schema,  add_completion, add_help};
+    add_render, add_still, add_strobe, add_sheet,    add_simulate, add_compare,    add_golden, add_watch,
+    add_doctor, add_plan,  add_init,   add_examples, add_schema,   add_completion, add_help};
 
 /// A subcommand and the values of its options, which live as long as the program.
 template <class Options>

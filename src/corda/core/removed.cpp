@@ -13,6 +13,7 @@ constexpr std::array kRemoved{
     Removed{"verify", "render checks each video before it gets its name; ffprobe tells about any video"},
     Removed{"join", "join videos by ffmpeg's demuxer concat"},
     Removed{"sweep", "use python3 -m corda sweep (Debian package python3-corda)"},
+    Removed{"report", "use python3 -m corda report (Debian package python3-corda)"},
     Removed{"--verify", "render checks each video before it gets its name"},
     Removed{"--shard", "give each machine a part of the pictures of a sequence (--frames FIRST:END)"},
     Removed{"--panels", "use several ropes in one scene, or join videos by ffmpeg's filter xstack"},

@@ -4,11 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include "corda/core/direction.hpp"
-#include "corda/pipeline/plan_text.hpp"
 #include "corda/view/scene_view.hpp"
 
 namespace corda::pipeline {
@@ -87,46 +83,6 @@ std::size_t tip_of(const System& system) {
     if (!ends.empty()) return ends.front();
     const std::vector<TrackedParticle> tracked = tracked_particles(system);
     return tracked.empty() ? 0 : tracked.front().particle;
-}
-
-std::size_t moving_count(const System& system) {
-    return static_cast<std::size_t>(std::ranges::count_if(
-        system.bodies, [&](const Body& body) { return !particles_of(system, body, false).empty(); }));
-}
-
-std::string particle_text(const System& system, const TrackedParticle& particle) {
-    const std::string name = body_name(system, particle.body);
-    const std::size_t number = particle.particle - system.bodies[particle.body].first_particle;
-    return particle.is_free_end
-               ? fmt::format("the free end of {} (particle {})", name, number)
-               : fmt::format("particle {} of {} (the {} of its free ones)", number, name,
-                             system.bodies[particle.body].is_net ? "most central" : "middle one");
-}
-
-std::string particles_text(const System& system, const std::vector<TrackedParticle>& particles) {
-    std::vector<std::size_t> ends;
-    std::vector<std::size_t> numbers;
-    std::string others;
-    for (const TrackedParticle& one : particles) {
-        if (one.is_free_end) {
-            ends.push_back(one.body);
-            numbers.push_back(one.particle - system.bodies[one.body].first_particle);
-        } else {
-            others += (others.empty() ? "" : " and ") + particle_text(system, one);
-        }
-    }
-    if (ends.empty()) return others;
-    std::string text;
-    if (ends.size() == 1) {
-        text =
-            fmt::format("the free end of {} (particle {})", body_name(system, ends.front()), numbers.front());
-    } else {
-        const bool are_same = std::ranges::count(numbers, numbers.front()) == std::ssize(numbers);
-        text = fmt::format("the free ends of {} ({})", bodies_text(system, ends),
-                           are_same ? fmt::format("particle {} of each", numbers.front())
-                                    : fmt::format("particles {}", fmt::join(numbers, ", ")));
-    }
-    return text + (others.empty() ? "" : " and ") + others;
 }
 
 }  // namespace corda::pipeline

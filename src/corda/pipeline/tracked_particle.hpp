@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "corda/sim/simulation.hpp"
@@ -39,14 +38,5 @@ inline constexpr double kNearPin = 0.1;
 
 /// The first free end of a rope; without one, the first tracked particle.
 [[nodiscard]] std::size_t tip_of(const System& system);
-
-/// Number of bodies with free particles.
-[[nodiscard]] std::size_t moving_count(const System& system);
-
-/// "the free end of rope 0 (particle 20)", "particle 599 of net 0 (the most central of its free ones)".
-[[nodiscard]] std::string particle_text(const System& system, const TrackedParticle& particle);
-
-/// Several particles: "the free ends of rope 0 to rope 5 (particle 2 of each)".
-[[nodiscard]] std::string particles_text(const System& system, const std::vector<TrackedParticle>& particles);
 
 }  // namespace corda::pipeline

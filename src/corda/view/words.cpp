@@ -72,13 +72,6 @@ std::string localized(std::string numbers, Language language) {
     return numbers;
 }
 
-std::string localized_sentence(std::string text, Language language) {
-    const auto is_digit = [&](std::size_t i) { return text[i] >= '0' && text[i] <= '9'; };
-    for (std::size_t i = 1; i + 1 < text.size(); ++i)
-        if (text[i] == '.' && is_digit(i - 1) && is_digit(i + 1)) text[i] = decimal_sign(language);
-    return text;
-}
-
 std::string translated_name(const System& system, std::size_t body, Language language) {
     const std::string name = body_name(system, body);
     return system.bodies[body].label.empty() ? translated(name, language) : name;

@@ -21,9 +21,6 @@ namespace corda::view {
 /// A text of numbers with the decimal sign of a language: "0,25".
 [[nodiscard]] std::string localized(std::string numbers, Language language);
 
-/// The same for a sentence, whose full stops stay.
-[[nodiscard]] std::string localized_sentence(std::string text, Language language);
-
 /// The label of a rope or net, or what body_name() calls it, in a language.
 [[nodiscard]] std::string translated_name(const System& system, std::size_t body, Language language);
 
