@@ -48,16 +48,4 @@ std::string_view CsvLine::end() {
     return line_;
 }
 
-CsvFile::CsvFile(const std::string& path, const OutputOptions& options,
-                 const std::vector<std::string>& columns)
-    : file_(path, options) {
-    for (const std::string& column : columns) line_.add(column);
-    file_.write(line_.end());
-}
-
-void CsvFile::add_row(std::span<const double> values) {
-    for (const double value : values) line_.add(value);
-    file_.write(line_.end());
-}
-
 }  // namespace corda

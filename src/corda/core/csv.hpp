@@ -1,11 +1,7 @@
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
-#include <vector>
-
-#include "corda/core/output_file.hpp"
 
 namespace corda {
 
@@ -29,19 +25,6 @@ class CsvLine {
     CsvStyle style_;
     std::string line_;
     bool is_ended_ = true;
-};
-
-/// A CSV file of numbers that is written row by row. Throws the errors of OutputFile.
-class CsvFile {
-  public:
-    CsvFile(const std::string& path, const OutputOptions& options, const std::vector<std::string>& columns);
-
-    void add_row(std::span<const double> values);
-    void commit() { file_.commit(); }
-
-  private:
-    OutputFile file_;
-    CsvLine line_;
 };
 
 }  // namespace corda

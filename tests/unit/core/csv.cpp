@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "support/command.hpp"
-
 namespace corda {
 namespace {
 
@@ -31,15 +29,6 @@ TEST(CsvLine, SeparatesCellsBySemicolonsIfNumbersHaveACommaAsDecimalSign) {
     line.add(2.0);
     line.add(1e-30);
     EXPECT_EQ(line.end(), "a,b;\"c;d\";-0,5;2;1,0000000000000001e-30\n");
-}
-
-TEST(CsvFile, HasAHeaderAndARowPerCall) {
-    const test::ScratchFolder folder;
-    CsvFile file(folder.file("a.csv"), {}, {"time_s", "x_m"});
-    file.add_row(std::vector{0.0, 1.5});
-    file.add_row(std::vector{1.0, std::nan("")});
-    file.commit();
-    EXPECT_EQ(test::read_file(folder.file("a.csv")), "time_s,x_m\n0,1.5\n1,\n");
 }
 
 }  // namespace
