@@ -238,8 +238,9 @@ class Film:
     kind, text, and lists, arrays and dictionaries of these; None leaves a key unchanged. `backend` and `require_gpu` choose
     OpenGL like --backend and --require-gpu.
 
-    Raises Error for a scene that cannot be read or simulated; warns before a simulation of many seconds. Ctrl-C ends every
-    call. Threads may share a film; it serves one at a time, without holding the interpreter's lock.
+    Raises Error for a scene that cannot be read (code 6) or is invalid (3); reading or drawing raises Error for a motion that
+    diverges (8), an unknown backend (2), and drawing without OpenGL (4). Warns before a simulation of many seconds. Ctrl-C ends
+    every call. Threads may share a film; it serves one at a time, without holding the interpreter's lock.
     """
 
     #: Largest video in bytes that a notebook embeds.
@@ -345,13 +346,14 @@ class Film:
 
     def to_pixels(self, positions):
         """Positions in m, of shape (..., 2), in pixels of a frame, y down: a pixel's centre is at (column + 0.5, row + 0.5).
-        If the camera moves, positions are those of all frames, of shape (frames, n, 2)."""
+        If the camera moves, positions are those of all frames, of shape (frames, n, 2). Raises ValueError for another shape."""
         return self._film.to_pixels(positions)
 
     def mask(self, k):
         """The body at each pixel of frame `k` without motion blur, as numpy uint8 of shape (height, width): 0 for the ground,
         else 1 + the index of the body in front (ropes before nets). A pixel belongs to a body that covers at least half of it;
-        supports, annotations and bars beyond the links are not in it."""
+        supports, annotations and bars beyond the links are not in it. Raises IndexError as frame(), and Error (code 2) for more
+        than 255 bodies."""
         return self._film.mask(_frame_index(k, self))
 
     @property
