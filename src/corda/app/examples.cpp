@@ -81,10 +81,11 @@ ExitCode write_scene(const Console& console, const InitOptions& options) {
                         "{}: corda init {}",
                         name, path, *meant, *meant));
     const std::string stem = path.substr(0, path.size() - std::string_view(".toml").size());
-    console.info(scene.empty() ? fmt::format("example {}; draw it with: corda render {} -o {}.mp4",
-                                             example.name, path, stem)
-                               : fmt::format("example {}; make its samples with: python3 -m corda sweep {} -o {}",
-                                             example.name, path, stem));
+    console.info(
+        scene.empty()
+            ? fmt::format("example {}; draw it with: corda render {} -o {}.mp4", example.name, path, stem)
+            : fmt::format("example {}; make its samples with: python3 -m corda sweep {} -o {}", example.name,
+                          path, stem));
     nlohmann::json outputs = nlohmann::json::array();
     for (const auto& [file_path, text] : files) {
         console.result(file_path);
