@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "corda/reference/numbers.hpp"
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/numbers.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/simulation.hpp"
 #include "support/plan_of.hpp"
 #include "support/reference_files.hpp"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "support/gravity.hpp"
 #include "support/slope.hpp"
 #include "support/solver_run.hpp"

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "corda/reference/numbers.hpp"
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/numbers.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "support/gravity.hpp"
 #include "support/nets.hpp"
 #include "support/slope.hpp"

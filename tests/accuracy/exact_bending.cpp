@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "accuracy/root.hpp"
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "support/gravity.hpp"
 #include "support/solver_run.hpp"
 

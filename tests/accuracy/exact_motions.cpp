@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "corda/reference/numbers.hpp"
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/numbers.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/exact/chain_dynamics.hpp"
 #include "support/reference_files.hpp"
 #include "support/solver_run.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "accuracy/root.hpp"
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/exact/string/part.hpp"
 #include "support/gravity.hpp"
 #include "support/solver_run.hpp"

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/simulation.hpp"
 #include "support/plan_of.hpp"
 #include "support/random_system.hpp"

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "corda/reference/numbers.hpp"
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/numbers.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "support/gravity.hpp"
 #include "support/solver_run.hpp"
 

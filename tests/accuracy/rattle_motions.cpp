@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "corda/reference/numbers.hpp"
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/numbers.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "support/reference_files.hpp"
 #include "support/slope.hpp"
 #include "support/solver_run.hpp"

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "corda/reference/numbers.hpp"
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/numbers.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "support/simulate.hpp"
 
 namespace corda::sim {

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "support/gravity.hpp"
 #include "support/slope.hpp"
 

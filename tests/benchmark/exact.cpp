@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/exact/chain_dynamics.hpp"
 #include "corda/sim/exact/chain_series.hpp"
 #include "corda/sim/exact/exact.hpp"

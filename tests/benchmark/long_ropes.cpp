@@ -10,7 +10,7 @@
 #include <cmath>
 #include <ctime>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/auto/planner.hpp"
 #include "corda/sim/solver.hpp"
 

@@ -12,8 +12,8 @@
 
 #include <fmt/format.h>
 
-#include "corda/reference/pendulum.hpp"
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/pendulum.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/sim/solver.hpp"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/relaxation/relaxation.hpp"
 
 namespace corda::sim {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/simulation.hpp"
 #include "stability/denormal_trap.hpp"
 #include "support/command.hpp"

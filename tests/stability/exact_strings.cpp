@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/exact/string/part.hpp"
 #include "support/strings.hpp"

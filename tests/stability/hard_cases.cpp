@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "benchmark/study/hard_cases.hpp"
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "stability/denormal_trap.hpp"
 #include "support/solver_run.hpp"
 

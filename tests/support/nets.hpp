@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 
 namespace corda::test {
 

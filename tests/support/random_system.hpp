@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/system.hpp"
 
 // Bodies of every kind that method relaxation can run, for tests that compare two implementations.

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <limits>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 
 namespace corda::peers {
 namespace {

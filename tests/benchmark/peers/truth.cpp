@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "benchmark/peers/equations.hpp"
-#include "corda/reference/numbers.hpp"
+#include "benchmark/study/reference/numbers.hpp"
 
 namespace corda::peers {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "benchmark/study/accuracy.hpp"
 #include "benchmark/study/problems.hpp"
-#include "corda/reference/numbers.hpp"
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/numbers.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 
 namespace corda::study {
 namespace {

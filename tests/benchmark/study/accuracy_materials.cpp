@@ -5,9 +5,9 @@
 
 #include "benchmark/study/accuracy.hpp"
 #include "benchmark/study/problems.hpp"
-#include "corda/reference/numbers.hpp"
-#include "corda/reference/pendulum.hpp"
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/numbers.hpp"
+#include "benchmark/study/reference/pendulum.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/defs.hpp"
 
 namespace corda::study {

@@ -11,7 +11,7 @@
 
 #include "benchmark/peers/xpbd.hpp"
 #include "benchmark/study/chapters.hpp"
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/solver.hpp"
 #include "support/extended_motion.hpp"
 

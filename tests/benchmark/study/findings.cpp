@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "benchmark/study/chapters.hpp"
+#include "benchmark/study/reference/numbers.hpp"
 #include "benchmark/study/swings.hpp"
-#include "corda/reference/numbers.hpp"
 
 namespace corda::study {
 namespace {

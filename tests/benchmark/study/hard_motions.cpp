@@ -8,8 +8,8 @@
 
 #include "benchmark/study/hard_cases.hpp"
 #include "benchmark/study/measure.hpp"
-#include "corda/reference/numbers.hpp"
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/numbers.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 
 namespace corda::study {
 namespace {

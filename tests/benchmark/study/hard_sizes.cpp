@@ -8,9 +8,9 @@
 
 #include "benchmark/study/hard_cases.hpp"
 #include "benchmark/study/measure.hpp"
+#include "benchmark/study/reference/numbers.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/core/basics.hpp"
-#include "corda/reference/numbers.hpp"
-#include "corda/reference/ropes.hpp"
 
 namespace corda::study {
 namespace {

@@ -10,10 +10,10 @@
 
 #include <fmt/format.h>
 
+#include "benchmark/study/reference/pendulum.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/text.hpp"
-#include "corda/reference/pendulum.hpp"
-#include "corda/reference/ropes.hpp"
 #include "corda/sim/auto/planner.hpp"
 #include "corda/sim/recording.hpp"
 

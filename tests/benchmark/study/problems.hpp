@@ -4,7 +4,7 @@
 #include <string>
 
 #include "benchmark/study/measure.hpp"
-#include "corda/reference/numbers.hpp"
+#include "benchmark/study/reference/numbers.hpp"
 #include "corda/scene/scene.hpp"
 
 namespace corda::study {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "benchmark/study/measure.hpp"
+#include "benchmark/study/reference/pendulum.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/core/basics.hpp"
-#include "corda/reference/pendulum.hpp"
-#include "corda/reference/ropes.hpp"
 #include "corda/sim/defs.hpp"
 
 namespace corda::study {

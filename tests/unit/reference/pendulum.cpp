@@ -1,11 +1,11 @@
-#include "corda/reference/pendulum.hpp"
+#include "benchmark/study/reference/pendulum.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "corda/reference/numbers.hpp"
+#include "benchmark/study/reference/numbers.hpp"
 #include "support/reference_files.hpp"
 
 namespace corda::reference {

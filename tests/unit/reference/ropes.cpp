@@ -1,4 +1,4 @@
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 
 #include <gtest/gtest.h>
 

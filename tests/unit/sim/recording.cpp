@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "support/simulate.hpp"
 
 namespace corda::sim {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/sim/system.hpp"
 #include "support/failure.hpp"

@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/defs.hpp"
 #include "support/failure.hpp"
 

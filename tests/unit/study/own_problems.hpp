@@ -1,6 +1,6 @@
 #pragma once
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/scene/scene.hpp"
 
 namespace corda::study {

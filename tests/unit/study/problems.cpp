@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "benchmark/study/reference/numbers.hpp"
 #include "corda/core/basics.hpp"
-#include "corda/reference/numbers.hpp"
 #include "own_problems.hpp"
 #include "support/nets.hpp"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 
 namespace corda::view {
 namespace {

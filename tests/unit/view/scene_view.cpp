@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "support/draw_list_of.hpp"
 #include "support/draw_lists.hpp"
 

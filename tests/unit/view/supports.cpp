@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "support/draw_list_of.hpp"
 #include "support/draw_lists.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "support/nets.hpp"
 #include "support/plan_of.hpp"
 

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/core/cancel.hpp"
 #include "corda/core/timeline.hpp"
-#include "corda/reference/ropes.hpp"
 #include "support/nets.hpp"
 #include "support/strings.hpp"
 

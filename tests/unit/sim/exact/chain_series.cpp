@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/exact/chain_series.hpp"
 #include "unit/sim/exact/chains.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::test {

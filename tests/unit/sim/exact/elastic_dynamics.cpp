@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "support/nets.hpp"
 #include "support/random_ring.hpp"
 #include "support/refusal_of.hpp"

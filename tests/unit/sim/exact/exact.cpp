@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "support/refusal_of.hpp"
 #include "support/solver_run.hpp"
 

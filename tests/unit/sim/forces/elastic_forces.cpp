@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/defs.hpp"
 #include "support/random_ring.hpp"
 

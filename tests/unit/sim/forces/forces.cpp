@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/exact/exact.hpp"
 #include "corda/sim/rattle/rattle.hpp"
 #include "corda/sim/relaxation/relaxation.hpp"

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/system.hpp"
 #include "unit/sim/rattle/constraint_checks.hpp"
 

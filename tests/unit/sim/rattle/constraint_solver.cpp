@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/rattle/chain_constraints.hpp"
 #include "corda/sim/rattle/graph_constraints.hpp"
 #include "support/nets.hpp"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/core/cancel.hpp"
-#include "corda/reference/ropes.hpp"
 #include "corda/sim/system.hpp"
 #include "support/nets.hpp"
 #include "unit/sim/rattle/constraint_checks.hpp"

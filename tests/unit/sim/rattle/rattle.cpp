@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/core/basics.hpp"
-#include "corda/reference/ropes.hpp"
 #include "support/solver_run.hpp"
 
 namespace corda::sim {

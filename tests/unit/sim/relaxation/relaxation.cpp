@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 #include "support/random_system.hpp"
 #include "support/simulate.hpp"
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "benchmark/study/reference/ropes.hpp"
 #include "corda/core/cancel.hpp"
-#include "corda/reference/ropes.hpp"
 #include "corda/sim/exact/exact.hpp"
 #include "support/refusal_of.hpp"
 #include "support/solver_run.hpp"

@@ -1,4 +1,4 @@
-#include "corda/reference/pendulum.hpp"
+#include "benchmark/study/reference/pendulum.hpp"
 
 #include <cmath>
 #include <numbers>

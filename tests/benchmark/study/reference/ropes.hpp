@@ -1,6 +1,6 @@
 #pragma once
 
-#include "corda/reference/numbers.hpp"
+#include "benchmark/study/reference/numbers.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::reference {

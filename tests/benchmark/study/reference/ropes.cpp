@@ -1,4 +1,4 @@
-#include "corda/reference/ropes.hpp"
+#include "benchmark/study/reference/ropes.hpp"
 
 #include <cmath>
 #include <numbers>
