@@ -2,6 +2,7 @@
 #include "figures.hpp"
 
 #include <corda/core/cancel.hpp>
+#include <corda/core/direction.hpp>
 #include <corda/core/markup.hpp>
 #include <corda/core/text.hpp>
 #include <corda/pipeline/film_renderer.hpp>
@@ -313,6 +314,8 @@ void save_still(PyFilm& film, const std::string& path, const std::vector<double>
 void add_figures(py::module_& module, py::class_<PyFilm>& film) {
     film.def("facts", &facts).def("rows", &rows).def("save_still", &save_still);
     module.attr("page_style") = kPageStyle;
+    // With the same bits on every machine, unlike numpy.arctan2.
+    module.def("angle", py::vectorize([](double y, double x) { return angle_rad(y, x); }));
     module.def("translated", [](const std::string& english, int language) {
         return view::translated(english, static_cast<Language>(language));
     });

@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from . import _corda
+
 _TURN = 2.0 * np.pi
 #: Within this share of its body's length from its pin, a particle has no angle worth showing.
 _NEAR_PIN = 0.1
@@ -75,7 +77,7 @@ class Track:
         (x, y), (vx, vy) = self.arm.T, self.velocity.T
         with np.errstate(all="ignore"):
             rate = (x * vy - y * vx) / (x * x + y * y)
-            raw = np.arctan2(x, -y)
+            raw = _corda.angle(x, -y)
             product = rate[:-1] * rate[1:]
             mean = np.where(product > 0.0, np.copysign(np.sqrt(np.maximum(product, 0.0)), rate[1:]), 0.0)
             turns = np.round((raw[:-1] + mean * np.diff(self.times) - raw[1:]) / _TURN)
@@ -172,7 +174,7 @@ class Swing:
 
     @staticmethod
     def _largest_angle(track, step):
-        angle, (_, rate) = np.arctan2(track.arm[:, 0], -track.arm[:, 1]), track.angle
+        angle, (_, rate) = _corda.angle(track.arm[:, 0], -track.arm[:, 1]), track.angle
         with np.errstate(invalid="ignore"):
             at = np.flatnonzero((rate[:-1] * rate[1:] < 0.0) & (np.abs(np.diff(angle)) < 0.5 * np.pi))
         value, slope = _cubic(angle[at], step[at] * rate[at], angle[at + 1], step[at] * rate[at + 1])
@@ -208,7 +210,7 @@ class Motion:
 
     @functools.cached_property
     def speed(self):
-        return self._extreme(np.hypot(*np.moveaxis(self.velocities, 2, 0)), [body.particles for body in self.bodies])
+        return self._extreme(np.sqrt((self.velocities**2).sum(axis=2)), [body.particles for body in self.bodies])
 
     @functools.cached_property
     def tension(self):
