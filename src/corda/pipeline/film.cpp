@@ -13,7 +13,6 @@
 #include "corda/sim/auto/planner.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/camera.hpp"
-#include "corda/view/number_text.hpp"
 
 namespace corda {
 namespace {
@@ -357,12 +356,6 @@ std::optional<double> Film::error_estimate_px() {
 
 const CameraDef& Film::camera() {
     return impl_->find_camera();
-}
-
-std::string Film::color_scale() {
-    impl_->find_camera();
-    const auto& scale = impl_->drawing.renderer.view().scale();
-    return scale ? view::scale_text(*scale) : "";
 }
 
 CameraDef Film::camera_at(double time_s) {

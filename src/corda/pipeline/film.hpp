@@ -80,9 +80,6 @@ class Film {
     /// this camera gives the same bytes. Simulates the motion to its end unless the scene gives both and has
     /// no supports.
     [[nodiscard]] const CameraDef& camera();
-    /// The scale of colours that show a quantity: "tension (N) 0 .. 20"; empty for others. Throws what
-    /// camera() throws.
-    [[nodiscard]] std::string color_scale();
     /// The same with the center and the height at a time, of a camera that moves too.
     [[nodiscard]] CameraDef camera_at(double time_s);
     /// Number of simulations of the motion so far.

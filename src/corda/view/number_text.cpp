@@ -132,10 +132,4 @@ NumberTitle title_of(const ColorScale& scale) {
     return title_of(kind.name, kind.unit, scale.high);
 }
 
-std::string scale_text(const ColorScale& scale) {
-    const NumberTitle title = title_of(scale);
-    return fmt::format("{} {} .. {}", title.text, display_number(scale.low / title.unit),
-                       display_number(scale.high / title.unit));
-}
-
 }  // namespace corda::view

@@ -59,7 +59,5 @@ struct NumberTitle {
 /// is empty for bare numbers.
 [[nodiscard]] NumberTitle title_of(const std::string& name, const std::string& unit, double largest);
 [[nodiscard]] NumberTitle title_of(const ColorScale& scale);
-/// A scale in words: "tension (kN) 0 .. 2".
-[[nodiscard]] std::string scale_text(const ColorScale& scale);
 
 }  // namespace corda::view
