@@ -2,12 +2,13 @@
 
 import math
 
+import matplotlib
 import numpy as np
 import pytest
 
 import corda
 
-pytest.importorskip("matplotlib").use("agg")
+matplotlib.use("agg")
 
 import corda.plot  # noqa: E402
 from corda import _theory  # noqa: E402
@@ -222,6 +223,26 @@ def test_bodies_are_told_apart_by_names_and_colours():
     assert names(corda.plot.tip(same)) == ["a", "a 2"]
 
 
+@pytest.mark.parametrize("labels, shown", [
+    (("_a", "_b"), ["_a", "_b"]),  # matplotlib leaves out names that begin so
+    (("_a", "b"), ["_a", "b"]),
+    ((r"5 $\foo$", "$x^2$"), [r"5 \$\foo\$", r"\$x^2\$"]),  # an invalid formula and a valid one
+    (("5 $", r"\$ 5 $$"), [r"5 \$", r"\\$ 5 \$\$"])])
+def test_labels_are_shown_as_they_are(labels, shown):
+    rope = "[[rope]]\nhang = { links = 1, length = 2.0, angle_deg = 20 }\nlabel = '%s'\n"
+    ropes = film("[world]\nduration = 0.1\n" + "".join(rope % label for label in labels))
+    for function in (corda.plot.angle, corda.plot.tip):
+        ax = function(ropes)
+        assert names(ax) == shown
+        ax.figure.canvas.draw()
+        for text, label in zip(ax.get_legend().get_texts(), labels):
+            # What is drawn has the width of the label without formulas.
+            plain = ax.text(0, 0, label, parse_math=False, fontsize=text.get_fontsize())
+            assert text.get_window_extent().width == pytest.approx(plain.get_window_extent().width, abs=1.0)
+        legend = [handle.get_color() for handle in ax.get_legend().get_lines()]
+        assert legend == [line.get_color() for line in ax.get_lines()[: len(labels)]]
+
+
 def test_curves_have_the_colours_of_the_scene_on_paper():
     rope = "[[rope]]\nhang = { links = 1, length = 2.0, angle_deg = 20 }\n"
 
@@ -268,7 +289,7 @@ def test_words_and_numbers_are_in_the_language_of_the_scene():
 def test_axes_can_be_given():
     from matplotlib.figure import Figure
 
-    axes = Figure().subplots(2, 3).flat
+    axes = [*Figure().subplots(2, 2).flat, Figure().subfigures(1, 2)[1].subplots()]
     shown = pendulum()
     for ax, function in zip(axes, (corda.plot.angle, corda.plot.energy, corda.plot.phase, corda.plot.tip, corda.plot.tension)):
         assert function(shown, ax) is ax and len(ax.get_lines()) > 0

@@ -61,7 +61,7 @@ class _Plot:
         self.ax = ax
         self.ax.grid(True, color="#dddddd", linewidth=0.5)
         self.ax.set_axisbelow(True)
-        self._entries = 0
+        self._legend = []  # pairs of an artist and its name
 
     def word(self, english):
         return _corda.translated(english, self.motion.language)
@@ -84,33 +84,40 @@ class _Plot:
         return units
 
     def line(self, x, y, name, color):
-        self.ax.plot(x, y, color=color, linewidth=0.9, label=name or None, solid_capstyle="round")
-        self._entries += bool(name)
+        (artist,) = self.ax.plot(x, y, color=color, linewidth=0.9, label=name or None, solid_capstyle="round")
+        if name:
+            self._legend.append((artist, name))
 
     def theory(self, name, x, y=None):
         """A dashed line, level if there is no y."""
-        if y is None:
-            self.ax.axhline(x, label=name, **_THEORY)
-        else:
-            self.ax.plot(x, y, label=name, **_THEORY)
-        self._entries += 1
+        artist = self.ax.axhline(x, label=name, **_THEORY) if y is None else self.ax.plot(x, y, label=name, **_THEORY)[0]
+        self._legend.append((artist, name))
 
     def circles(self, x, y, name):
-        self.ax.plot(x, y, linestyle="none", marker="o", markersize=3.0, markerfacecolor="white",
-                     markeredgecolor=_THEORY["color"], markeredgewidth=0.8, zorder=3, label=name)
-        self._entries += 1
+        (artist,) = self.ax.plot(x, y, linestyle="none", marker="o", markersize=3.0, markerfacecolor="white",
+                                 markeredgecolor=_THEORY["color"], markeredgewidth=0.8, zorder=3, label=name)
+        self._legend.append((artist, name))
 
     def finish(self):
         """Adds the names of the curves above the axes, in as many columns as fit."""
-        if self._entries:
+        if self._legend:
+            artists, names = zip(*self._legend)
             font = self.ax.xaxis.label.get_size()
-            _, labels = self.ax.get_legend_handles_labels()
-            width_pt = 72.0 * self.ax.figure.get_figwidth() * self.ax.get_position().width
-            entry_pt = font * (0.56 * max(map(len, labels)) + 2.8)
-            columns = int(_np.clip(width_pt // entry_pt, 1, len(labels)))
-            self.ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncol=columns, frameon=False, borderaxespad=0.2,
-                           handlelength=1.6, columnspacing=1.2, fontsize=font)
+            width_pt = 72.0 * self.ax.bbox.width / self.ax.figure.dpi  # of axes of figures and of subfigures
+            entry_pt = font * (0.56 * max(map(len, names)) + 2.8)
+            columns = int(_np.clip(width_pt // entry_pt, 1, len(names)))
+            # matplotlib leaves out names that begin with "_": names are set afterwards.
+            legend = self.ax.legend(artists, [str(k) for k in range(len(names))], loc="lower left", bbox_to_anchor=(0.0, 1.0),
+                                    ncol=columns, frameon=False, borderaxespad=0.2, handlelength=1.6, columnspacing=1.2,
+                                    fontsize=font)
+            for text, name in zip(legend.get_texts(), names):
+                text.set_text(name)
         return self.ax
+
+
+def _plain(text):
+    """A text of the scene for matplotlib, which would take what is between two dollar signs for a formula."""
+    return text.replace("$", r"\$")
 
 
 def _title(name, unit, largest):
@@ -155,7 +162,7 @@ def _curves(motion, tracks, curve_of):
     """Curves of tracks for _draw(), by a function of a track."""
     colors = _colors([track.body for track in motion.tracks])
     named = len(motion.tracks) > 1
-    return [(curve_of(track), track.body.shown_name if named else "", colors[motion.tracks.index(track)])
+    return [(curve_of(track), _plain(track.body.shown_name) if named else "", colors[motion.tracks.index(track)])
             for track in tracks]
 
 
@@ -291,7 +298,7 @@ def divergence(film, ax=None):
     apart = _np.hypot(*(first.position - second.position).T)
     size = _np.ptp(motion.positions[0], axis=0).max()
     least = apart[apart > 0.0].min() if _np.any(apart > 0.0) else 1e-16 * size
-    name = f"{first.body.shown_name} – {second.body.shown_name}" if motion.moving_count > 2 else ""
+    name = _plain(f"{first.body.shown_name} – {second.body.shown_name}") if motion.moving_count > 2 else ""
     curve = _np.stack([motion.times, _np.maximum(apart, least)], axis=1)
     plot = _Plot(motion, ax)
     plot.name_axes(("t", "s", 0.0), ("distance of the tips", "m", 0.0), is_log=True)
