@@ -28,9 +28,14 @@ import numbers as _numbers
 import operator as _operator
 import os as _os
 import pathlib as _pathlib
+import signal as _signal
 import sys as _sys
 import tempfile as _tempfile
 from typing import NamedTuple as _NamedTuple
+
+if _sys.argv[:1] == ["-m"] and "corda" in _sys.orig_argv:
+    # `python3 -m corda` is importing its package: Ctrl-C has no traceback to show of that.
+    _signal.signal(_signal.SIGINT, lambda *_: _os._exit(130))
 
 import numpy as _np
 

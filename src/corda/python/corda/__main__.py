@@ -3,25 +3,30 @@
 import importlib
 import sys
 
-from . import _console, __version__
+from . import Error, _console, __version__
 
 _COMMANDS = {"sweep": "make many samples of a scene as a labelled data set",
              "report": "draw the figures that a paper shows of a scene"}
 
 
 def _main(argv):
-    if argv and argv[0] in _COMMANDS:
-        return importlib.import_module(f".{argv[0]}", __package__).main(argv[1:])
+    at = next((k for k, word in enumerate(argv) if not word.startswith("-")), None)
+    command = None if at is None else argv[at]
+    if command in _COMMANDS:
+        return importlib.import_module(f".{command}", __package__).main(argv[:at] + argv[at + 1:])
     console = _console.Console("--json" in argv)
-    if argv == ["--version"]:
-        print(f"corda {__version__}")
-        return 0
-    if argv and argv[0] in ("-h", "--help"):
-        lines = [f"  {name}  {what}" for name, what in _COMMANDS.items()]
-        print("\n".join(["usage: python3 -m corda COMMAND ...", "", *lines, "", "Each has --help."]))
-        return 0
-    console.error(f"there is no command {argv[0]!r} of Python; give sweep or report" if argv else "give a command: sweep or report")
-    return 2
+    try:
+        if command is None and "--version" in argv:
+            _console.print_result(f"corda {__version__}")
+            return 0
+        if command is None and ("-h" in argv or "--help" in argv):
+            lines = [f"  {name}  {what}" for name, what in _COMMANDS.items()]
+            _console.print_result("\n".join(["usage: python3 -m corda COMMAND ...", "", *lines, "", "Each has --help."]))
+            return 0
+    except Error as error:
+        return _console.fail(console, error.code, str(error))
+    return _console.fail(console, 2, "give a command: sweep or report" if command is None else
+                         f"there is no command {command!r} of Python; give sweep or report")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
 """Messages, progress and exit codes of `python3 -m corda`, like those of the program."""
 
 import argparse
+import contextlib
+import errno
 import json
 import os
 import signal
@@ -31,10 +33,56 @@ class Parser(argparse.ArgumentParser):
     def error(self, message):
         raise UsageError(f"{message}; see --help")
 
+    def print_help(self, file=None):
+        if file is None:
+            print_result(self.format_help().rstrip("\n"))
+        else:
+            super().print_help(file)
+
 
 def printable(text):
     """A text whose lines hold no control characters."""
     return "".join(c if c.isprintable() or c == "\n" else c.encode("unicode_escape", "backslashreplace").decode() for c in text)
+
+
+def _is_terminal(stream):
+    return stream is not None and stream.isatty()  # Python has None for a stream that is closed
+
+
+def _discard(stream):
+    """Leads a stream that takes no more to /dev/null, or the interpreter would fail when it writes the rest at its end."""
+    with contextlib.suppress(OSError, ValueError), open(os.devnull, "wb") as nothing:
+        os.dup2(nothing.fileno(), stream.fileno())
+
+
+def print_result(text):
+    """Prints a line on standard output. Raises Error (code 6) if it is closed or full; if its reader left, as head(1) does, the
+    line is dropped."""
+    try:
+        if sys.stdout is None:
+            raise OSError(errno.EBADF, os.strerror(errno.EBADF))
+        sys.stdout.buffer.write(text.encode("utf-8", "surrogateescape") + b"\n")
+        sys.stdout.buffer.flush()
+    except BrokenPipeError:
+        _discard(sys.stdout)
+    except OSError as error:
+        if sys.stdout is not None:
+            _discard(sys.stdout)
+        made = Error(f"writing to standard output: {error.strerror}")
+        made.code = 6
+        raise made from None
+
+
+def _print_message(text, end="\n"):
+    """Prints on standard error. A closed or full one must not end the work."""
+    if sys.stderr is None:
+        return
+    try:
+        print(text, end=end, file=sys.stderr, flush=True)
+    except BlockingIOError:
+        pass  # a full pipe may take the next message
+    except (OSError, ValueError):
+        _discard(sys.stderr)
 
 
 class Console:
@@ -44,15 +92,12 @@ class Console:
         self.is_json = is_json
         self.is_quiet = is_quiet
         self._is_verbose = is_verbose
-        self.draws_bar = sys.stderr.isatty()
+        self.draws_bar = _is_terminal(sys.stderr)
         self._uses_color = self.draws_bar and not os.environ.get("NO_COLOR")
 
     def _say(self, label, color, text):
         shown = f"\x1b[{color}m{label}\x1b[0m" if label and self._uses_color else label
-        try:
-            print(f"corda: {shown}{printable(text)}", file=sys.stderr, flush=True)
-        except (OSError, ValueError):
-            pass  # a closed or full standard error must not end the work
+        _print_message(f"corda: {shown}{printable(text)}")
 
     def info(self, text):
         if not self.is_quiet:
@@ -71,24 +116,11 @@ class Console:
 
     def result(self, text):
         if not self.is_json:
-            self._print(printable(text) if sys.stdout.isatty() else text)
+            print_result(printable(text) if _is_terminal(sys.stdout) else text)
 
     def report(self, value):
         if self.is_json:
-            self._print(json.dumps(value, indent=2, sort_keys=True, ensure_ascii=sys.stdout.isatty()))
-
-    @staticmethod
-    def _print(text):
-        try:
-            sys.stdout.buffer.write(text.encode("utf-8", "surrogateescape") + b"\n")
-            sys.stdout.buffer.flush()
-        except BrokenPipeError:
-            # The reader left, as head(1) does; nothing more is to be written when the interpreter ends.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        except OSError as error:
-            made = Error(f"writing to standard output: {error.strerror}")
-            made.code = 6
-            raise made from None
+            print_result(json.dumps(value, indent=2, sort_keys=True, ensure_ascii=_is_terminal(sys.stdout)))
 
 
 def _duration_text(seconds):
@@ -120,8 +152,8 @@ class Progress:
         if self._console.draws_bar:
             if now - self._last >= _SECONDS_BETWEEN_BARS or done == total:
                 cells = _BAR_CELLS * done // total
-                self._write(f"\r\x1b[K{self._what} [{'#' * cells}{'.' * (_BAR_CELLS - cells)}] {percent:3} % {done}/{total}, "
-                            f"{self._time_left(done, total, now)}")
+                _print_message(f"\r\x1b[K{self._what} [{'#' * cells}{'.' * (_BAR_CELLS - cells)}] {percent:3} % "
+                               f"{done}/{total}, {self._time_left(done, total, now)}", end="")
                 self._last, self._is_drawn = now, True
         elif percent >= self._next_percent and now >= self._next_line:
             self._next_line, self._next_percent = now + _SECONDS_BETWEEN_LINES, percent // 10 * 10 + 10
@@ -135,15 +167,8 @@ class Progress:
 
     def end(self):
         if self._is_drawn:
-            self._write("\r\x1b[K")
+            _print_message("\r\x1b[K", end="")
             self._is_drawn = False
-
-    @staticmethod
-    def _write(text):
-        try:
-            print(text, end="", file=sys.stderr, flush=True)
-        except (OSError, ValueError):
-            pass
 
 
 class Terminated(KeyboardInterrupt):
@@ -171,19 +196,20 @@ def run(argv, parser, action):
     except SystemExit as error:  # --help
         return error.code or 0
     except UsageError as error:
-        return _fail(console, 2, str(error))
+        return fail(console, 2, str(error))
     except Error as error:
-        return _fail(console, error.code, str(error))
+        return fail(console, error.code, str(error))
     except KeyboardInterrupt as error:
-        return _fail(console, 143 if isinstance(error, Terminated) else 130, str(error) or "interrupted")
+        return fail(console, 143 if isinstance(error, Terminated) else 130, str(error) or "interrupted")
     except MemoryError:
-        return _fail(console, 75, "out of memory; a smaller scene or picture, or fewer jobs, may help")
+        return fail(console, 75, "out of memory; a smaller scene or picture, or fewer jobs, may help")
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
 
 
-def _fail(console, code, message):
+def fail(console, code, message):
+    """Reports an error; returns its exit code."""
     console.error(message)
     try:
         console.report({"schema": 1, "error": {"code": code, "message": printable(message)}})
