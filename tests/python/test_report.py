@@ -14,8 +14,6 @@ import pytest
 
 import corda
 
-pytest.importorskip("matplotlib")
-
 SCENE = """schema = 1
 [world]
 duration = 1.0
@@ -301,6 +299,30 @@ def test_a_dry_run_writes_nothing_and_errors_are_json(tmp_path):
     assert not (tmp_path / "out").exists()
     ended = run(scene, "-o", tmp_path, "--json")
     assert json.loads(ended.stdout)["error"]["code"] == ended.returncode == 6
+
+
+@pytest.mark.parametrize("option", ["--backend=device:99", "--require-gpu"])
+def test_without_opengl_nothing_is_written(option, tmp_path):
+    if option == "--require-gpu" and run(write(tmp_path, SCENE), "-o", tmp_path / "gpu", option).returncode == 0:
+        pytest.skip("there is a GPU")
+    ended = run(write(tmp_path, SCENE), "-o", tmp_path / "out", option)
+    assert ended.returncode == 4 and "no usable OpenGL" in ended.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_force_replaces_links_themselves(tmp_path):
+    from corda import report
+
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "a.csv").symlink_to(write(tmp_path, "kept", "target"))
+    (tmp_path / "out" / "b.csv").mkdir()
+    folder = report.Folder(tmp_path / "out", True, False)
+    folder.write("a.csv", "new")
+    assert (tmp_path / "out" / "a.csv").read_text() == "new" and not (tmp_path / "out" / "a.csv").is_symlink()
+    assert (tmp_path / "target").read_text() == "kept" and folder.files == [str(tmp_path / "out" / "a.csv")]
+    with pytest.raises(corda.Error, match="no ordinary file") as raised:
+        folder.write("b.csv", "new")
+    assert raised.value.code == 6 and not list((tmp_path / "out").glob("*.tmp"))
 
 
 @pytest.mark.parametrize("sent, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])

@@ -10,12 +10,12 @@ import os
 import pathlib
 import re
 import sys
-import tempfile
 import time
 
 import numpy as np
 
 from . import Error, Film, __version__, _console, _corda, _error
+from ._archive import save_file
 from ._motion import motion_of
 
 #: Widths of figures in print, a column and a page of a journal, and the resolution of PNGs in pixels per inch.
@@ -57,6 +57,8 @@ def _film(options):
             raise _error(f"--{name}: the value is empty; give one, or leave it out")
     own = [f"{key}={value}" for key, value in (("video.fps", options.fps), ("world.duration", options.duration)) if value]
     is_path = options.scene != "-"
+    if not is_path and sys.stdin is None:
+        raise _error("standard input is closed; give a scene file", 6)
     text = b"" if is_path else sys.stdin.buffer.read()
     source = os.fsencode(options.scene) if is_path else b"stdin"
     gl = (options.backend or os.environ.get("CORDA_BACKEND") or "auto", options.require_gpu)
@@ -128,24 +130,13 @@ class Folder:
 
     def write(self, name, data):
         """Writes bytes or a text as the file of that name."""
-        data = data.encode("utf-8", "surrogateescape") if isinstance(data, str) else data
-        temporary = None
+        path = self.path / name
         try:
-            with tempfile.NamedTemporaryFile(dir=self.path, prefix=f"{name}.", suffix=".tmp", delete=False) as file:
-                temporary = file.name
-                file.write(data)
-                file.flush()
-                os.fsync(file.fileno())
-            mask = os.umask(0)
-            os.umask(mask)
-            os.chmod(temporary, 0o666 & ~mask)
-            os.replace(temporary, self.path / name)
-            temporary = None
+            if path.is_symlink():
+                path.unlink()  # --force replaces the link itself
         except OSError as error:
-            raise _error(f"{self.path / name}: writing failed: {error.strerror}", 6) from None
-        finally:
-            if temporary is not None:
-                os.unlink(temporary)
+            raise _error(f"{path}: cannot be replaced: {error.strerror}", 6) from None
+        save_file(path, data.encode("utf-8", "surrogateescape") if isinstance(data, str) else data)
         self.note(name)
 
     def note(self, name):
@@ -363,6 +354,8 @@ def _report(console, options):
     film = _film(options)
     facts = film._film.facts()
     asked = _asked_times(options, film, facts)
+    if not options.dry_run:
+        film.still(0.0)  # raises without usable OpenGL, before anything is written
     folder = Folder(options.output, options.force, options.dry_run)
     for note in film.plan["notes"]:
         console.warning(note)
