@@ -3,11 +3,14 @@
 A mark is a pair of comments, `<!-- begin of NAME -->` and `<!-- end of NAME -->`, around a part of a page that is written
 by a program.
 """
+import contextlib
 import io
 import math
+import os
 import pathlib
 import platform
 import re
+import secrets
 import textwrap
 from typing import NamedTuple
 
@@ -119,6 +122,17 @@ def page_text(title, chapters):
     return "\n\n".join(lines) + "\n"
 
 
+def replace_file(path, data):
+    """Writes bytes or a text beside a file and renames it, so that the file is complete whenever it ends."""
+    temporary = path.with_name(f"{path.name}.{secrets.token_hex(4)}.tmp")
+    try:
+        temporary.write_bytes(data.encode("utf-8") if isinstance(data, str) else data)
+        os.replace(temporary, path)
+    finally:
+        with contextlib.suppress(OSError):
+            temporary.unlink(missing_ok=True)
+
+
 def save_picture(picture, folder):
     """Writes a picture as PNG, 80 pixels per inch."""
     from PIL import Image  # which comes with matplotlib
@@ -126,7 +140,9 @@ def save_picture(picture, folder):
     drawn = io.BytesIO()
     picture.figure.savefig(drawn, format="png", dpi=80, bbox_inches="tight")
     with Image.open(drawn) as image:  # fewer colours take a third of the bytes
-        image.convert("RGB").quantize(96).save(folder / picture.name, optimize=True)
+        packed = io.BytesIO()
+        image.convert("RGB").quantize(96).save(packed, format="png", optimize=True)
+    replace_file(folder / picture.name, packed.getvalue())
 
 
 def processor():

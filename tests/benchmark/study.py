@@ -16,7 +16,7 @@ import pathlib
 import subprocess
 import sys
 
-from page import ROOT, marks_of, page_text, put, save_picture
+from page import ROOT, marks_of, page_text, put, replace_file, save_picture
 
 HERE = pathlib.Path(__file__).resolve().parent
 PAGES = [HERE / "README.md", ROOT / "README.md"]
@@ -75,9 +75,12 @@ def program_of(options):
     if options.program:
         return options.program
     build = pathlib.Path(os.environ.get("BUILD_DIR", ROOT / "build" / "ci"))
-    if not (build / "build.ninja").exists():
-        subprocess.run(["cmake", "--preset", "ci"], cwd=ROOT, check=True, stdout=sys.stderr)
-    subprocess.run(["cmake", "--build", build, "--target", "benchmark_study"], check=True, stdout=sys.stderr)
+    try:
+        if not (build / "build.ninja").exists():
+            subprocess.run(["cmake", "--preset", "ci"], cwd=ROOT, check=True, stdout=sys.stderr)
+        subprocess.run(["cmake", "--build", build, "--target", "benchmark_study"], check=True, stdout=sys.stderr)
+    except subprocess.CalledProcessError:
+        fail(1, "benchmark_study cannot be built; see above, or give --program")
     return build / "tests" / "benchmark_study"
 
 
@@ -93,15 +96,18 @@ def measure(name, options, path):
         if not any(path.parent.iterdir()):
             path.parent.rmdir()
         sys.exit(run.returncode if run.returncode > 0 else 128 - run.returncode)
-    path.write_bytes(run.stdout)
+    replace_file(path, run.stdout)
 
 
-def read(path):
-    """The measurements in a file. Ends with exit code 6 if they cannot be read."""
+def read(path, chapter):
+    """The measurements of a chapter in a file. Ends with exit code 6 if they cannot be read."""
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        return fail(6, f"{path}: is not JSON of benchmark_study: {error}")
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        fail(6, f"{path}: is not JSON of benchmark_study: {error}")
+    if not isinstance(found, dict) or found.get("chapter") != chapter:
+        fail(6, f"{path}: is not JSON of benchmark_study {chapter}")
+    return found
 
 
 def prepare(folder, force):
@@ -110,24 +116,21 @@ def prepare(folder, force):
         fail(6, f"{folder}: exists and is not a folder; choose another name")
     if folder.is_dir() and any(folder.iterdir()) and not force:
         fail(6, f"{folder}: is not empty; give --force to replace files of the same names")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        fail(6, f"{folder}: cannot be made: {error.strerror}")
+    folder.mkdir(parents=True, exist_ok=True)
 
 
 def chapter_of(name, path):
     """The tables and plots of the measurements in a file."""
     import chapters  # with matplotlib, which takes a second
     from peers.tables import peers
-    return peers(path) if name == "peers" else chapters.CHAPTERS[name](read(path))
+    return peers(path) if name == "peers" else chapters.CHAPTERS[name](read(path, name))
 
 
 def write_own_page(folder, title, chapters):
     """Writes all chapters as FOLDER/README.md, with the pictures of the last."""
     for picture in chapters[-1].pictures:
         save_picture(picture, folder)
-    (folder / "README.md").write_text(page_text(title, chapters), encoding="utf-8")
+    replace_file(folder / "README.md", page_text(title, chapters))
 
 
 def write_parts(chapter, pages):
@@ -139,7 +142,7 @@ def write_parts(chapter, pages):
         text = page.read_text(encoding="utf-8")
         for part in chapter.parts:
             text = put(text, part)
-        page.write_text(text, encoding="utf-8")
+        replace_file(page, text)
         for picture in chapter.pictures:
             if f"({picture.name})" in text:
                 save_picture(picture, page.parent)
@@ -148,7 +151,7 @@ def write_parts(chapter, pages):
 def main():
     options = options_of(sys.argv[1:])
     if not importlib.util.find_spec("matplotlib"):
-        fail(1, "there is no matplotlib; install the package python3-matplotlib")
+        fail(2, "there is no matplotlib; install the package python3-matplotlib")
     kept = options.output or ROOT / "build" / "study"
     if options.output:
         prepare(options.output, options.force)
@@ -172,4 +175,10 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+        sys.stdout.flush()
+    except KeyboardInterrupt:
+        fail(130, "interrupted; chapters that were measured are kept")
+    except OSError as error:
+        fail(6, f"{error.filename or 'standard output'}: {error.strerror or error}")

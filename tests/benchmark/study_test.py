@@ -107,6 +107,37 @@ def test_refusals_write_nothing(tmp_path):
         assert [path.name for path in tmp_path.iterdir()] == ["scene.toml"], arguments
 
 
+def test_ends_leave_what_was_written(tmp_path):
+    broken = tmp_path / "broken"
+    broken.mkdir()
+    (broken / "speed.json").write_text('{"schema": 1}')
+    slow, full = tmp_path / "slow", tmp_path / "full"
+    for folder in (slow, full):
+        folder.mkdir()
+        (folder / "README.md").write_text("kept")
+    program = tmp_path / "program"
+    program.write_text("#!/bin/sh\nkill -INT $PPID\nsleep 60\n")
+    program.chmod(0o755)
+    after = f"sys.path.insert(0, {str(HERE)!r}); sys.argv = sys.argv[1:]; runpy.run_path(sys.argv[0], run_name='__main__')"
+    large = (sys.executable, "-c", "import resource, runpy, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN); "
+             f"resource.setrlimit(resource.RLIMIT_FSIZE, (9, 9)); {after}")
+    hidden = (sys.executable, "-c", "import importlib.util, runpy, sys; importlib.util.find_spec = lambda name: None; " + after)
+    measured = tmp_path / "measured"
+    measured.mkdir()
+    (measured / "accuracy.json").write_text(json.dumps(sample("accuracy")))
+    for runner, arguments, code, message in [
+            ((sys.executable,), ["--from", broken, "-o", "out"], 6, "speed.json: is not JSON of benchmark_study speed"),
+            ((sys.executable,), ["speed", "--program", "missing", "-o", "none"], 6, "missing: No such file or directory"),
+            ((sys.executable,), ["speed", "--program", program, "-o", slow, "--force"], 130, "interrupted"),
+            (large, ["--from", measured, "-o", full, "--force"], 6, "File too large"),
+            (hidden, ["--from", measured, "-o", "out"], 2, "python3-matplotlib")]:
+        run = subprocess.run([*runner, HERE / "study.py", *arguments], cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert run.returncode == code, (arguments, run.stderr)
+        assert message in run.stderr and "Traceback" not in run.stderr, (arguments, run.stderr)
+    for folder in (slow, full):
+        assert [(path.name, path.read_text()) for path in folder.iterdir()] == [("README.md", "kept")]
+
+
 def sample(chapter):
     """Measurements of a chapter that are few, and made up."""
     common = {"chapter": chapter, "compiler": "C", "build": "B", "corda": "1", "times": "T"}
