@@ -293,7 +293,7 @@ using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
     return py::reinterpret_steal<py::str>(PyUnicode_DecodeFSDefault(message));
 }
 
-/// Adds the class `Sweep`.
+/// Adds what the Python class `Sweep` is made of: the painter of samples, their facts and labels.
 void add_sweep(py::module_& module);
 
 }  // namespace corda::python

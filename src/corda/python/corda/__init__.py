@@ -368,8 +368,8 @@ class Film:
 
     @property
     def plan(self):
-        """The plan of the film: a dictionary of methods (one per body), error_estimate_m, error_estimate_px and horizon_s;
-        unknown values are None."""
+        """The plan of the film: a dictionary of methods (one per body), error_estimate_m, error_estimate_px, horizon_s and
+        notes (a list of what to know about the choice); unknown values are None."""
         return self._film.plan()
 
     @property

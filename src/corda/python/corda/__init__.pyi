@@ -16,6 +16,7 @@ class Plan(TypedDict):
     error_estimate_m: float | None
     error_estimate_px: float | None
     horizon_s: float | None
+    notes: list[str]
 
 class Camera(TypedDict):
     center: tuple[float, float]
