@@ -79,7 +79,16 @@ test = 0.1
     assert sweep.splits == {"train": 0.9, "test": 0.1}
 
 
+def test_a_sweep_file_may_begin_with_the_mark_of_utf_8(load, tmp_path):
+    load("samples = 3\n" + VARY)
+    text = (tmp_path / "sweep.toml").read_text()
+    (tmp_path / "sweep.toml").write_text("\ufeff" + text)
+    assert _sweep_file.load(tmp_path / "sweep.toml").samples == 3
+
+
 MASS = '"rope[0].mass" = { uniform = [1, 2] }\n'
+HUGE = "0x" + 5000 * "f"
+LISTS = "samples = 1\n[vary]\n\"world.gravity\" = [\n  [0.0, -1.0],\n  [0.0]\n]\n"
 MANY = "grid = true\n[vary]\n" + "".join(f'"{key}" = {[1] * 100}\n' for key in (
     "rope[0].mass", "rope[0].payload", "world.drag", "world.gravity", "world.duration"))
 OUTPUT = "samples = 1\n" + VARY + "[output]\n"
@@ -96,6 +105,8 @@ def vary(values):
     ("samples = 1\nshards = 3\n" + VARY, ":4:1: shards: ", 'unknown key "shards"; there are schema, scene, samples'),
     ("samples = 1\nsede = 3\n" + VARY, ":4:1: sede: ", 'unknown key "sede"; did you mean "seed"?'),
     ("samples = 0\n" + VARY, ":3:11: samples: ", "0 is an integer; give an integer, 1 .. 1000000000"),
+    (f"samples = {HUGE}\n" + VARY, ":3:11: samples: ", "this is an integer beyond 64 bits; give an integer, 1 .. 1000000000"),
+    (f"samples = 1\nseed = {2**63}\n" + VARY, ":4:8: seed: ", "beyond 64 bits; give an integer, 0 .. 9223372036854775807"),
     ("samples = 10.0\n" + VARY, ":3:11: samples: ", "10 is a number with a fraction; give an integer"),
     ("samples = 1000000001\n" + VARY, ":3:11: samples: ", "give an integer, 1 .. 1000000000"),
     ("samples = 1\nseed = -1\n" + VARY, ":4:8: seed: ", "-1 is an integer; give an integer, 0 .. "),
@@ -120,12 +131,17 @@ def vary(values):
      "does not fit scene.toml: rope: index 7 is out of range; the list has 1; give 0"),
     ('samples = 1\n[vary]\n"net[0].mass" = [1]\n', ':5:17: vary."net[0].mass": ', 'the scene gives no list "net"; add net to it first'),
     ('samples = 1\n[vary]\n"rope.mass" = [1]\n', ':5:15: vary."rope.mass": ', "give an index: rope[0]"),
+    ('samples = 1\n[vary]\n"rope[²].mass" = [1]\n', ':5:18: vary."rope[²].mass": ', "is not a key; give one such as rope[0].mass"),
     ('samples = 1\n[vary]\n"rope[a].mass" = [1]\n', ':5:18: vary."rope[a].mass": ', "is not a key; give one such as rope[0].mass"),
     (vary("1.0"), ':5:18: vary."rope[0].mass": ', "1 is a number with a fraction; give a list of values, or a distribution"),
     (vary("[]"), ':5:18: vary."rope[0].mass": ', "an empty list; give values to choose from"),
     (vary("[1979-05-27]"), ':5:18: vary."rope[0].mass": ', "this is a date or a time; no key of a scene takes"),
     (vary("[inf]"), ':5:18: vary."rope[0].mass": ', "no key of a scene takes"),
     (vary("[9223372036854775808]"), ':5:18: vary."rope[0].mass": ', "no key of a scene takes"),
+    (vary(f"[{HUGE}]"), ':5:18: vary."rope[0].mass": ', "this is an integer beyond 64 bits; no key of a scene takes"),
+    (vary(f"{{ uniform = [1, {HUGE}] }}"), ':5:18: vary."rope[0].mass": ', "uniform is [least, largest]"),
+    (LISTS + '"rope[0].mas" = [1]\n', ':9:1: vary."rope[0].mas": ', 'did you mean "mass"'),
+    (f"# \u2028 \x85\n{vary('1.0')}", ':6:18: vary."rope[0].mass": ', "1 is a number with a fraction"),
     (vary("{ }"), ':5:18: vary."rope[0].mass": ', "no distribution; give uniform, log_uniform, normal, integer"),
     (vary("{ unifrom = [1, 2] }"), ':5:20: vary."rope[0].mass".unifrom: ', 'unknown key "unifrom"; did you mean "uniform"?'),
     (vary("{ uniform = [1, 2], normal = [1, 2] }"), ':5:18: vary."rope[0].mass": ', "two distributions; give one"),
@@ -142,6 +158,7 @@ def vary(values):
     (SPLIT + "train = 0.8\ntest = 0.1\n", ":6:1: split: ", "the shares have the sum 0.9; give shares with the sum 1"),
     (SPLIT + "train = 0.8\ntest = 0.3\n", ":6:1: split: ", "the sum 1.1"),
     (SPLIT + 'train = 1\n"a/b" = 0\n', ":8:9: split.a/b: ", "no name of a split; give a word such as train"),
+    (SPLIT + f"train = {HUGE}\ntest = 1\n", ":7:9: split.train: ", "this is an integer beyond 64 bits; give a share, 0 .. 1"),
     (SPLIT + 'train = "all"\ntest = 1\n', ":7:9: split.train: ", '"all" is a string; give a share, 0 .. 1'),
 ])
 def test_an_error_has_its_place_and_a_remedy(load, text, place, part):
@@ -201,6 +218,7 @@ def test_the_scene_must_be_there_and_sound(tmp_path):
     assert code == 6 and message.startswith(f":2:9: scene: {tmp_path / 'none.toml'}: cannot read the scene file: No such file")
     assert failure("")[1].startswith(":1:1: scene: is missing; give the path of a scene")
     assert failure("scene = 3")[1].startswith(":2:9: scene: 3 is an integer; give the path of a scene")
+    assert failure('scene = "-"')[1].startswith(':2:9: scene: "-" is standard input, which the sweep file alone may be; give the path')
     assert failure('scene = ""')[1].startswith(':2:9: scene: "" is a string; give the path')
     (tmp_path / "bad.toml").write_text(SCENE.replace("duration", "gravty"))
     code, message = failure('scene = "bad.toml"')

@@ -125,8 +125,8 @@ def _described(value):
         return f'"{short_text(value)}" is a string'
     if isinstance(value, bool):
         return f"{toml_of(value)} is a boolean"
-    if isinstance(value, int):
-        return f"{value} is an integer"
+    if isinstance(value, int):  # hexadecimal ones may have more digits than Python prints
+        return f"{value} is an integer" if -2**63 <= value < 2**63 else "this is an integer beyond 64 bits"
     if isinstance(value, float):
         return f"{number_text(value)} is a number with a fraction"
     return "this is a date or a time"
@@ -149,7 +149,7 @@ def nearest(word, known):
 
 def key_steps(key):
     """The names and indices of a dotted key: ("rope", 0, "mass")."""
-    return tuple(int(step) if step.isdigit() else step for step in re.findall(r"[^.\[\]\s]+", key))
+    return tuple(int(step) if step.isascii() and step.isdecimal() else step for step in re.findall(r"[^.\[\]\s]+", key))
 
 
 def section_of(key):
@@ -165,11 +165,12 @@ class _Places:
     _HEADER = re.compile(r"\s*\[\s*([^\[\]]+?)\s*\]\s*(?:#.*)?$")
     _KEY = re.compile(r"""\s*("(?:[^"\\]|\\.)*"|'[^']*'|[\w-]+(?:\s*\.\s*[\w-]+)*)\s*=\s*""")
 
-    def __init__(self, text):
+    def __init__(self, text, document):
         self._places = {}
         section = ()
-        for line, content in enumerate(text.splitlines(), 1):
-            if header := self._HEADER.match(content):
+        for line, content in enumerate(text.split("\n"), 1):
+            header = self._HEADER.match(content)
+            if header and isinstance(document.get(self._steps(header[1])[0]), dict):  # not a line of a list, such as [0.0, 1.0]
                 section = self._steps(header[1])
                 self._places.setdefault(section, ((line, header.start(1)), (line, header.start(1))))
             elif key := self._KEY.match(content):
@@ -203,7 +204,7 @@ class _Reader:
 
     def __init__(self, document, text, sweep):
         self._document = document
-        self._places = _Places(text)
+        self._places = _Places(text, document)
         self._sweep = sweep
         self._problems = {}
 
@@ -214,7 +215,10 @@ class _Reader:
         if self._integer("schema", 1, 1) is None:
             self._missing("schema", "give schema = 1")
         name = document.get("scene")
-        if isinstance(name, str) and name:
+        if name == "-":
+            self._fail(("scene",), '"-" is standard input, which the sweep file alone may be; give the path of a scene (./- for a '
+                       "file of this name)")
+        elif isinstance(name, str) and name:
             sweep.scene_name = name
         elif name is not None:
             self._fail(("scene",), f"{_described(name)}; give the path of a scene, relative to this file")
@@ -397,10 +401,11 @@ class _Reader:
                 self._fail(("split", name), f"{_described(share)}; give a share, 0 .. 1")
             if not name.isprintable() or not name or set(name) & set(',"/ '):
                 self._fail(("split", name), "no name of a split; give a word such as train")
-        shares = [float(share) for share in split.values() if is_number(share)]
-        if not abs(sum(shares) - 1.0) < 1e-9:
-            self._fail(("split",), f"the shares have the sum {sum(shares):.6g}; give shares with the sum 1")
-        self._sweep.splits = {name: float(share) for name, share in split.items() if is_number(share)}
+        sound = {name: float(share) for name, share in split.items() if is_number(share) and 0.0 <= share <= 1.0}
+        total = sum(sound.values())
+        if len(sound) == len(split) and not abs(total - 1.0) < 1e-9:
+            self._fail(("split",), f"the shares have the sum {total:.6g}; give shares with the sum 1")
+        self._sweep.splits = sound
 
 
 def _numbers(value, is_vector):
@@ -476,7 +481,7 @@ def load(path):
     """
     path = os.fsdecode(_path(path))
     sweep = Definition(source="stdin" if path == "-" else path)
-    text = _read_text(path, "sweep")
+    text = _read_text(path, "sweep").removeprefix("\ufeff")  # the mark of UTF-8 that some editors write
     reader = _Reader(_parse(text, sweep.source), text, sweep)
     reader.read()
     sweep.scene_source = os.path.join("" if path == "-" else os.path.dirname(path), sweep.scene_name)
