@@ -9,11 +9,11 @@ import numpy as np
 
 from . import _corda, _parameters
 from ._corda import Error, __version__
+from ._motion import _cubic, _root
 
 #: Codes of errors that say that a scene is not one that Corda makes. They refuse a sample and do not end the sweep.
 REFUSALS = (2, 3, 8)
 _OF_A_SUMMARY = ("times", "positions", "velocities", "tensions")
-_HALVINGS = 53
 _local = threading.local()  # OpenGL belongs to a thread
 
 
@@ -124,18 +124,18 @@ def _swing(times, arm, velocity):
     with np.errstate(divide="ignore", invalid="ignore"):
         rate = (x * vy - y * vx) / (x * x + y * y)
     angle = angle_of(-y, x)
-    largest = float(np.abs(angle).max())
-    for k in np.flatnonzero((rate[:-1] * rate[1:] < 0.0) & (np.abs(np.diff(angle)) < 0.5 * np.pi)):
-        value, slope = _cubic(angle[k], step[k] * rate[k], angle[k + 1], step[k] * rate[k + 1])
-        largest = max(largest, abs(value(_root(slope))))
+    at = np.flatnonzero((rate[:-1] * rate[1:] < 0.0) & (np.abs(np.diff(angle)) < 0.5 * np.pi))
+    value, slope = _cubic(angle[at], step[at] * rate[at], angle[at + 1], step[at] * rate[at + 1])
+    largest = float(np.abs(np.concatenate([angle, value(_root(slope, len(at)))])).max())
     below = y < 0.0
     passes = np.flatnonzero(((x[:-1] < 0.0) != (x[1:] < 0.0)) & below[:-1] & below[1:])
     rises = x[passes + 1] >= 0.0
     period_s = None
     if len(passes) > 1 and (rises[1:] != rises[:-1]).all():
-        first, last = (float(times[k]) + float(step[k]) * _root(_cubic(x[k], step[k] * vx[k], x[k + 1], step[k] * vx[k + 1])[0])
-                       for k in passes[[0, -1]])
-        period_s = 2.0 * (last - first) / (len(passes) - 1)
+        at = passes[[0, -1]]
+        value, _ = _cubic(x[at], step[at] * vx[at], x[at + 1], step[at] * vx[at + 1])
+        first, last = times[at] + step[at] * _root(value, 2)
+        period_s = float(2.0 * (last - first) / (len(passes) - 1))
     return period_s, largest * (180.0 / np.pi)
 
 
@@ -153,25 +153,3 @@ def angle_of(x, y):
         total = 1.0 / (2 * k + 1) - total * t * t
     angle = 4.0 * t * total
     return np.where(x < 0.0, np.where(y < 0.0, -np.pi, np.pi) - angle, angle)
-
-
-def _cubic(value0, slope0, value1, slope1):
-    """The cubic polynomial of s, 0 .. 1, with these values and derivatives at its ends, and its derivative."""
-    value0, slope0, value1, slope1 = map(float, (value0, slope0, value1, slope1))
-    rise = value1 - value0
-    square, cube = 3.0 * rise - 2.0 * slope0 - slope1, slope0 + slope1 - 2.0 * rise
-    return (lambda s: value0 + s * (slope0 + s * (square + s * cube)),
-            lambda s: slope0 + s * (2.0 * square + s * 3.0 * cube))
-
-
-def _root(function):
-    """The place in 0 .. 1 where a function changes its sign, which it does between its ends."""
-    low, high = 0.0, 1.0
-    rises = function(high) > 0.0
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        if (function(middle) > 0.0) == rises:
-            high = middle
-        else:
-            low = middle
-    return 0.5 * (low + high)
