@@ -160,6 +160,24 @@ def test_a_wrong_file_is_refused_at_once(tmp_path):
     assert unknown.value.code == 3
 
 
+@pytest.mark.parametrize("how, words", [({"backend": 3}, "^backend: takes a str"),
+                                        ({"require_gpu": "no"}, "^require_gpu: takes True or")])
+def test_opengl_is_chosen_as_for_a_film(tmp_path, how, words):
+    path = write(tmp_path, ROPE, "samples = 1" + VARY)
+    for make in (corda.Sweep, corda.Film):
+        with pytest.raises(TypeError, match=words):
+            make(path, **how)
+    with pytest.raises(corda.Error, match='backend "typo" is unknown') as unknown:
+        corda.Sweep(path, backend="typo")
+    assert unknown.value.code == 2
+
+
+def test_a_sequence_needs_no_encoder(tmp_path):
+    path = write(tmp_path, ROPE.replace("64, 48", "33, 21"), "samples = 1" + VARY)
+    assert corda.Sweep(path)[0]["frames"].shape[1:] == (21, 33, 4)
+    assert corda.sweep.main([str(path), "-o", str(tmp_path / "shards"), "-q"]) == 2  # clips have even sides
+
+
 def test_a_sweep_is_a_sequence(tmp_path):
     sweep = corda.Sweep(write(tmp_path, ROPE, "samples = 7\nshard_samples = 2\nseed = 5" + VARY))
     assert len(sweep) == 7 and repr(sweep).startswith("<corda.Sweep of 7 samples of ")

@@ -373,7 +373,8 @@ def test_reports_and_errors_are_json(folder):
     (["--shard", "2/2"], "--shard 2/2: give I/N"), (["--shard", "x"], "--shard x: give I/N"),
     (["--check", "--force"], "--check excludes --force"), (["--force", "--shard", "0/2"], "--shard excludes --force"),
     (["--check", "--sheet"], "--check excludes --sheet"), (["--jobs", "-1"], "--jobs -1 is not within"), (["--jobs", "x"], "--jobs"),
-    (["--job", "1"], "--job 1; see --help"), (["-o", "-"], "give a folder"), (["--plot", "x"], "--plot x: is not Y:X")])
+    (["--job", "1"], "--job 1; see --help"), (["-o", "-"], "give a folder"), (["--plot", "x"], "--plot x: is not Y:X"),
+    (["--backend", "typo"], 'backend "typo" is unknown')])
 def test_a_wrong_command_line_is_refused(folder, more, words):
     folder.define("samples = 1")
     code, _, messages = folder.run("out", *more)

@@ -48,6 +48,8 @@ def test_defaults_are_all_pictures_labels_and_columns(load):
     assert (sweep.source, sweep.scene_name, sweep.scene_toml) == (load.path, "scene.toml", SCENE)
     assert (sweep.samples, sweep.is_grid, sweep.seed, sweep.shard_samples, sweep.pictures) == (3, False, 0, 256, "mp4")
     assert (sweep.labels, sweep.summary, sweep.splits) == (LABELS, SUMMARY, {})
+    assert sweep.encoder == ""
+    _sweep_file.find_encoder(sweep)
     assert sweep.encoder.startswith("libx264 ")
 
 

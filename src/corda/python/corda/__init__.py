@@ -128,6 +128,14 @@ def _float(value, name):
     return number
 
 
+def _gl(backend, require_gpu):
+    """How to reach OpenGL: the backend, and whether only a GPU will do."""
+    backend = _text(backend, "backend") if backend is not None else ""
+    if not isinstance(require_gpu, (bool, _np.bool_)):
+        raise TypeError(f"require_gpu: takes True or False, not {require_gpu!r}")
+    return backend or _os.environ.get("CORDA_BACKEND") or "auto", bool(require_gpu)
+
+
 def _limit(value, name):
     return None if value is None else _float(value, name)
 
@@ -259,10 +267,7 @@ class Film:
             raise TypeError("Film takes a path or text=..., and not both")
         lines = _settings(settings, keys)
         source = _path(path) if path is not None else b"text"
-        backend = _text(backend, "backend") if backend is not None else ""
-        if not isinstance(require_gpu, (bool, _np.bool_)):
-            raise TypeError(f"require_gpu: takes True or False, not {require_gpu!r}")
-        self._gl = (backend or _os.environ.get("CORDA_BACKEND") or "auto", bool(require_gpu))
+        self._gl = _gl(backend, require_gpu)
         try:
             self._film = _corda.Film(_text(text or "", "text"), source, path is not None, list(lines), *self._gl, False)
         except Error as error:

@@ -63,7 +63,7 @@ class Definition:
     shard_samples: int = 256
     vary: dict = dataclasses.field(default_factory=dict)  #: a list of values or a Distribution by key, in the order of the file
     pictures: str = "mp4"
-    encoder: str = ""  #: of "mp4", with its versions, on which clips depend
+    encoder: str = ""  #: of "mp4", with its versions, on which clips depend: see find_encoder()
     labels: list = dataclasses.field(default_factory=lambda: list(LABELS))
     summary: list = dataclasses.field(default_factory=lambda: list(SUMMARY))
     splits: dict = dataclasses.field(default_factory=dict)  #: shares with the sum 1 by name, or none
@@ -492,6 +492,10 @@ def load(path):
         raise _error(f"{reader.place('scene')}: scene: {error}", error.code) from None
     _corda.check_scene(sweep.scene_toml, os.fsencode(sweep.scene_source))
     reader.check_scene_keys()
+    return sweep
+
+
+def find_encoder(sweep):
+    """Sets the encoder of the clips of a sweep. Raises Error (code 2) if there is none for its scene."""
     if sweep.pictures == "mp4":
         sweep.encoder = _corda.encoder_of(sweep.scene_toml, os.fsencode(sweep.scene_source), "clip.mp4")
-    return sweep

@@ -10,13 +10,21 @@ import os
 import time
 import warnings
 
-from . import _console, _sample, _sweep_file
+from . import _console, _corda, _gl, _sample, _sweep_file
 from ._corda import Error
 
 __all__ = ["Sweep"]
 
 _OF_A_SAMPLE = ("key", "sample", "split", "parameters", "fps", "camera", "px_per_m", "method", "error_estimate_m",
                 "error_estimate_px", "horizon_s", "summary")
+_PLAIN_SCENE = "schema = 1\n[[rope]]\nhang = { links = 1, length = 1.0 }\n"
+
+
+def _known_gl(backend, require_gpu):
+    """How to reach OpenGL. Raises Error (code 2) for an unknown backend, which would refuse every sample."""
+    gl = _gl(backend, require_gpu)
+    _corda.Film(_PLAIN_SCENE, b"text", False, [], *gl, False)
+    return gl
 
 
 class Sweep:
@@ -32,13 +40,13 @@ class Sweep:
     shape (frames, height, width, 4), unless output.pictures is "none".
 
     path: the sweep file. backend, require_gpu: as for Film. Raises Error for a file that cannot be read: code 6, or 3 with all that
-    is wrong in it. A sample that the scene refuses, or whose motion diverges, raises Error (code 3, 2 or 8) if it is asked for by
-    its number, and is left out with a warning when the sweep is iterated; `failures` has the reasons so far by number. Threads may
-    share a sweep. Ctrl-C ends the making of a sample.
+    is wrong in it, and 2 for an unknown backend. A sample that the scene refuses, or whose motion diverges, raises Error (code 3, 2
+    or 8) if it is asked for by its number, and is left out with a warning when the sweep is iterated; `failures` has the reasons so
+    far by number. Threads may share a sweep. Ctrl-C ends the making of a sample.
     """
 
     def __init__(self, path, *, backend=None, require_gpu=False):
-        self._gl = (backend or os.environ.get("CORDA_BACKEND") or "auto", bool(require_gpu))
+        self._gl = _known_gl(backend, require_gpu)
         self._definition = _sweep_file.load(path)
         self._numbers = range(self._definition.samples)
         self.failures = {}
@@ -198,6 +206,7 @@ def _sweep(console, options):
     _check_options(options)
     shard = _shard_of(options.shard)
     definition = _sweep_file.load(options.sweep)
+    _sweep_file.find_encoder(definition)
     folder = options.output
     if options.plot or options.sheet:
         from . import _sweep_figures  # matplotlib is not needed without figures
@@ -206,7 +215,7 @@ def _sweep(console, options):
     if options.check:
         return _check(console, definition, folder)
     how = _run_sweep.Run(folder, shard, options.jobs or len(os.sched_getaffinity(0)), options.force,
-                         (options.backend or os.environ.get("CORDA_BACKEND") or "auto", options.require_gpu))
+                         _known_gl(options.backend, options.require_gpu))
     console.detail(f"jobs: {how.jobs}, encoder: {definition.encoder or 'none'}")
     result = _run_sweep.run_sweep(definition, how, _console.Progress(console, "sweep"))
     wall_s = time.monotonic() - start
