@@ -4,6 +4,7 @@ import csv
 import math
 import xml.etree.ElementTree
 
+import matplotlib
 import numpy as np
 import pytest
 
@@ -100,6 +101,38 @@ def test_a_hanging_rope_has_the_theory_of_its_links(run, tmp_path):
         assert abs(float(row["theory"]) / expected - 1.0) < 1e-4  # measured 7.6e-5, for the amplitude of one link
 
 
+def test_a_plot_leaves_refused_samples_out(run, tmp_path):
+    code, _, messages = run('grid = true\n[vary]\n"rope[0].mass" = [1.0, -1.0, 2.0]\n"rope[0].hang.angle_deg" = [20.0]\n',
+                            "--plot", "mass:angle_deg")
+    assert code == 0, messages
+    assert [row["key"] for row in rows_of(tmp_path / "out" / "mass-angle_deg.csv")] == ["000000", "000002"]
+
+
+def test_a_plot_has_the_words_and_the_style_of_no_one_else(run, tmp_path, monkeypatch):
+    (tmp_path / "dollars").mkdir()
+    text = 'samples = 4\n[vary]\n"rope[0].label" = ["$a$", "b"]\n"rope[0].hang.angle_deg" = { uniform = [10.0, 80.0] }\n'
+    more = "--plot", "period_s:angle_deg", "--sheet"
+    assert run(text, *more)[0] == 0
+    paths = [tmp_path / "out" / name for name in ("period_s-angle_deg.svg", "sheet.png")]
+    before = [path.read_bytes() for path in paths]
+    assert b"<!-- label = $a$ -->" in before[0] and b"<!-- theory, label = $a$ -->" in before[0]
+    with matplotlib.rc_context({"axes.facecolor": "black", "savefig.facecolor": "red", "font.family": "monospace"}):
+        assert run(text, *more)[0] == 0
+    assert [path.read_bytes() for path in paths] == before
+    (tmp_path / "sweep.toml").rename(tmp_path / "$x$.toml")
+    assert corda.sweep.main([str(tmp_path / "$x$.toml"), "-o", str(tmp_path / "out"), *more]) == 0
+    assert b"<!-- $x$ -->" in paths[0].read_bytes()
+
+
+@pytest.mark.parametrize("angle_deg", [180.0, -180.0, 250.0, -250.0])
+def test_a_swing_over_the_top_has_no_theory(tmp_path, angle_deg):
+    (tmp_path / "scene.toml").write_text(SCENE)
+    (tmp_path / "sweep.toml").write_text('schema = 1\nscene = "scene.toml"\nsamples = 1\n[vary]\n"rope[0].mass" = [1]\n')
+    sweep = _sweep_file.load(tmp_path / "sweep.toml")
+    assert _sweep_figures.period_theory(sweep, {"rope[0].mass": 1}, angle_deg) is None
+    assert _sweep_figures.period_theory(sweep, {"rope[0].mass": 1}, math.copysign(179.0, angle_deg)) > 5.0
+
+
 def test_a_plot_without_samples_is_refused(run):
     code, _, messages = run('samples = 1\n[vary]\n"world.duration" = [0.1]\n', "--plot", "period_s:duration")
     assert code == 2 and "no finished sample in" in messages and "a period needs two passes below the only pin" in messages
@@ -113,6 +146,18 @@ def test_unknown_columns_are_refused_at_once(run, tmp_path, columns, words):
     code, _, messages = run('samples = 1\n[vary]\n"rope[0].mass" = [1]\n"rope[1].mass" = [1]\n', "--plot", columns)
     assert code == 2 and words in messages
     assert not (tmp_path / "out").exists()
+
+
+def test_a_contact_sheet_is_drawn_with_a_gpu_if_the_command_says_so(run, tmp_path):
+    expected = 0
+    try:
+        corda.Film(text=SCENE, require_gpu=True).frame(0)
+    except corda.Error as error:
+        expected = error.code
+    text = 'samples = 1\n[vary]\n"rope[0].mass" = [1]\n'
+    assert run(text, "--require-gpu")[0] == 0  # without pictures
+    assert run(text, "--sheet", "--require-gpu")[0] == expected
+    assert (tmp_path / "out" / "sheet.png").exists() == (expected == 0)
 
 
 def test_a_contact_sheet_shows_poses_and_parameters(run, tmp_path):

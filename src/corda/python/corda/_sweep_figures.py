@@ -16,7 +16,7 @@ from ._shards import error_of, rows_of
 from ._sweep_file import Distribution, is_number, section_of, short_text, value_text
 
 try:
-    from matplotlib import rc_context
+    from matplotlib import style
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 except ImportError:
@@ -103,7 +103,7 @@ def _series_keys(sweep, x):
 def period_theory(sweep, parameters, angle_deg):
     """The period in s of the scene with these parameters that swings through an angle, by theory; None if there is none."""
     swing = _corda.swing_of(sweep.scene_toml, os.fsencode(sweep.scene_source), _parameters.settings_of(parameters))
-    if swing is None or not angle_deg < 180.0:
+    if swing is None or not abs(angle_deg) < 180.0:
         return None
     model, links, spacing_m, gravity = swing
     if model == "rope":
@@ -118,7 +118,7 @@ def _read_points(sweep, folder, y, x):
     series, points = {}, []
     for number, row in rows_of(sweep, folder):
         values = x.value(row), y.value(row)
-        if None in values:
+        if None in values or "failure" in row:
             continue
         parameters = row["parameters"]
         name = ", ".join(f"{_short_name(key)} = {value_text(parameters[key])}" for key in parameters if key in keys)
@@ -135,12 +135,18 @@ def _read_points(sweep, folder, y, x):
     return series, points, is_curve
 
 
+def _literal(text):
+    """A text that matplotlib shows as it is, without mathematics between dollar signs."""
+    return text.replace("$", r"\$")
+
+
 def _draw_points(sweep, axes, series, points, is_curve):
     for i, (name, parameters) in enumerate(series.items()):
         own = [point for point in points if point["series"] == name]
         color = _COLORS[i % len(_COLORS)]
         known = [(point["x"], point["theory"]) for point in own if point["theory"] is not None]
-        label = f"theory, {name}" if name else "theory"
+        shown = _literal(name)
+        label = f"theory, {shown}" if name else "theory"
         if known and is_curve:
             angles = np.linspace(min(known)[0], max(known)[0], _CURVE_POINTS + 1)
             periods = [period_theory(sweep, parameters, angle) for angle in angles]
@@ -148,7 +154,7 @@ def _draw_points(sweep, axes, series, points, is_curve):
         elif known:
             axes.plot(*zip(*known), linestyle="none", marker="x", markersize=4.0, color=color, label=label)
         axes.plot([point["x"] for point in own], [point["y"] for point in own], linestyle="none", marker="o", markersize=3.0,
-                  markerfacecolor="none", color=color, label=name or "measured")
+                  markerfacecolor="none", color=color, label=shown or "measured")
 
 
 def write_plot(sweep, folder, columns):
@@ -158,13 +164,13 @@ def write_plot(sweep, folder, columns):
     series, points, is_curve = _read_points(sweep, folder, y, x)
     stem = os.path.join(folder, f"{_file_name(sweep, y)}-{_file_name(sweep, x)}")
     paths = []
-    with rc_context(_STYLE):
+    with style.context(["default", _STYLE]):  # whatever the user's matplotlibrc says
         figure = Figure(figsize=(_PAGE_MM / _MM_PER_INCH, 0.6 * _PAGE_MM / _MM_PER_INCH), layout="constrained")
         axes = figure.add_subplot()
         _draw_points(sweep, axes, series, points, is_curve)
         axes.set_xlabel(x.title())
         axes.set_ylabel(y.title())
-        axes.set_title(os.path.splitext(os.path.basename(sweep.source))[0], loc="left", fontsize=9.0)
+        axes.set_title(_literal(os.path.splitext(os.path.basename(sweep.source))[0]), loc="left", fontsize=9.0)
         values = sweep.vary.get(x.name)
         if isinstance(values, Distribution) and values.shape == "log_uniform":
             axes.set_xscale("log")
@@ -201,7 +207,7 @@ def _first_swing(film):
     return [float(times[k]) for k in sorted({math.floor(last * i / (_POSES - 1) + 0.5) for i in range(_POSES)})]
 
 
-def _cell(sweep, number):
+def _cell(sweep, number, gl):
     """The poses of a sample (None if the scene refuses it) and the lines below them."""
     lines = [_parameters.key_of(number)]
     try:
@@ -213,7 +219,7 @@ def _cell(sweep, number):
         settings = _parameters.settings_of(parameters)
         width, height = _corda.picture_size(*scene, settings)
         size = [max(1, math.floor(_CELL_PX * side / max(width, height) + 0.5)) for side in (width, height)]
-        film = _corda.sample_film(*scene, [*settings, "overlay={}", f"video.size={size}"], "auto", False)
+        film = _corda.sample_film(*scene, [*settings, "overlay={}", f"video.size={size}"], *gl)
         times = _first_swing(film)
         picture = _corda.poses(film, times)
     except Error as error:
@@ -223,15 +229,25 @@ def _cell(sweep, number):
     return picture, [*lines, f"{len(times)} poses, t = 0 .. {times[-1]:.4g} s"]
 
 
-def write_sheet(sweep, folder):
-    """Draws the first swing of up to 36 samples with their parameters and times as sheet.png in the folder; returns the path."""
+def write_sheet(sweep, folder, gl):
+    """Draws the first swing of up to 36 samples with their parameters and times as sheet.png in the folder; returns the path.
+    `gl`: that of a Run."""
     count = min(_MAX_CELLS, sweep.samples)
     columns = math.ceil(math.sqrt(count))
-    cells = [_cell(sweep, i * sweep.samples // count) for i in range(count)]
+    cells = [_cell(sweep, i * sweep.samples // count, gl) for i in range(count)]
+    with style.context("default"):
+        picture = _sheet_png(cells, columns)
+    path = os.path.join(folder, "sheet.png")
+    save_file(path, picture)
+    return path
+
+
+def _sheet_png(cells, columns):
+    """The bytes of a PNG of the cells, pairs of a picture and lines of text."""
     picture_px = max((len(picture) for picture, _ in cells if picture is not None), default=0)
     row_px = picture_px + max(len(lines) for _, lines in cells) * _LINE_PX + 2 * _GAP_PX
     width_px = columns * (_CELL_PX + _GAP_PX) + _GAP_PX
-    height_px = -(-count // columns) * row_px
+    height_px = -(-len(cells) // columns) * row_px
     figure = Figure(figsize=(width_px / 100.0, height_px / 100.0), dpi=100)
     canvas = FigureCanvasAgg(figure)
     for i, (picture, lines) in enumerate(cells):
@@ -247,6 +263,4 @@ def write_sheet(sweep, folder):
                 text.set_text(line + "…")
     file = io.BytesIO()
     figure.savefig(file, format="png", metadata={"Software": None})
-    path = os.path.join(folder, "sheet.png")
-    save_file(path, file.getvalue())
-    return path
+    return file.getvalue()

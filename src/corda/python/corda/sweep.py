@@ -225,7 +225,7 @@ def _sweep(console, options):
     for columns in options.plot:
         figures += _sweep_figures.write_plot(definition, folder, columns)
     if options.sheet:
-        figures.append(_sweep_figures.write_sheet(definition, folder))
+        figures.append(_sweep_figures.write_sheet(definition, folder, how.gl))
     for path in figures:
         console.result(path)
     console.report({"schema": 1, "output": folder, "samples": definition.samples, "shards": result.shards,
