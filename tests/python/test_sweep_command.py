@@ -441,6 +441,23 @@ def test_a_signal_keeps_finished_shards(folder, jobs, number, code):
     assert all(made[name] == whole[name] for name in whole if name.startswith("shard-"))
 
 
+def test_a_signal_to_one_worker_is_no_interruption(folder):
+    folder.define("samples = 3000\nshard_samples = 1", rest=QUICK)
+    process = folder.start("out", "--jobs", "2", start_new_session=True)
+    wait_until((folder.path / "out/shard-000001.json").exists)
+    workers = [number for number in living(process.pid) if b"spawn_main" in pathlib.Path(f"/proc/{number}/cmdline").read_bytes()]
+    assert len(workers) == 2
+    os.kill(workers[0], signal.SIGTERM)
+    assert process.wait(60) == 75
+    assert "a process that makes samples was killed" in process.stderr.read()
+    wait_until(lambda: not living(process.pid))
+    process = folder.start("all", "--jobs", "2", start_new_session=True)
+    wait_until((folder.path / "all/shard-000001.json").exists)
+    os.killpg(process.pid, signal.SIGTERM)  # as schedulers of clusters do
+    assert process.wait(60) == 143
+    wait_until(lambda: not living(process.pid))
+
+
 def test_killed_sweeps_go_on(folder):
     """At random moments; 100 with CORDA_TEST_LONG."""
     folder.define("samples = 60\nshard_samples = 2", rest=QUICK)

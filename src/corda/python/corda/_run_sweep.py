@@ -2,6 +2,7 @@
 
 import collections
 import concurrent.futures
+import contextlib
 import dataclasses
 import itertools
 import multiprocessing
@@ -9,6 +10,7 @@ import multiprocessing.resource_tracker
 import os
 import signal
 import threading
+import time
 
 from . import _shards
 from ._archive import read_plain, sha256_of
@@ -17,6 +19,7 @@ from ._sample import make_sample
 
 _MAX_CHUNK = 8  # samples that a process makes at a time: each exchange takes some 0.2 ms
 _CHUNKS_AHEAD = 3  # per process
+_SIGNALS_APART_S = 0.5  # those that one sender sends to all processes of a sweep
 
 
 @dataclasses.dataclass
@@ -82,6 +85,16 @@ class _Worker:
             cls.is_making = False
 
 
+@contextlib.contextmanager
+def _sigint_blocked():
+    """Processes that start meanwhile never get SIGINT: Ctrl-C is the parent's, which ends its workers."""
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+
+
 def _packed_by_processes(definition, gl, numbers, count, jobs):
     """What pack() returns of each of `count` numbers, in order."""
     size = max(1, min(_MAX_CHUNK, count // (4 * jobs)))
@@ -89,19 +102,23 @@ def _packed_by_processes(definition, gl, numbers, count, jobs):
     others = set(multiprocessing.active_children())
     multiprocessing.resource_tracker.ensure_running()  # which would unblock SIGINT
     pool = concurrent.futures.ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), _Worker.start, (definition, gl))
+    waiting = collections.deque()
+
+    def submit(count):
+        with _sigint_blocked():  # any call may start a process
+            waiting.extend(pool.submit(_Worker.pack, chunk) for chunk in itertools.islice(chunks, count))
+
     try:
-        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # Ctrl-C is the parent's, which ends its workers
-        try:
-            first = itertools.islice(chunks, _CHUNKS_AHEAD * jobs)
-            waiting = collections.deque([pool.submit(_Worker.pack, chunk) for chunk in first])
-        finally:
-            signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+        submit(_CHUNKS_AHEAD * jobs)
         while waiting:
-            made = waiting.popleft().result()
-            waiting.extend(pool.submit(_Worker.pack, chunk) for chunk in itertools.islice(chunks, 1))
-            yield from made
+            made = waiting.popleft()
+            if isinstance(made.exception(), KeyboardInterrupt):  # of a signal to that process
+                raise concurrent.futures.BrokenExecutor
+            submit(1)
+            yield from made.result()
         pool.shutdown()
     except concurrent.futures.BrokenExecutor:
+        time.sleep(_SIGNALS_APART_S)  # a signal to this process, too, is raised here and tells more
         raise _shards.error_of(75, "a process that makes samples was killed; a smaller scene or picture, or fewer jobs, may help "
                                "if memory ended") from None
     finally:
