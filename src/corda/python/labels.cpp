@@ -72,17 +72,12 @@ constexpr std::array<Label, 7> kLabels{{
 
 }  // namespace
 
-std::span<const Label> all_labels() {
-    return kLabels;
-}
-
 const Label* find_label(std::string_view name) {
     const auto found = std::ranges::find(kLabels, name, &Label::name);
     return found == kLabels.end() ? nullptr : &*found;
 }
 
-std::vector<Array> read_labels(Film& film, std::span<const Label* const> labels, std::int64_t frames,
-                               const std::function<void(const State&)>& visit) {
+std::vector<Array> read_labels(Film& film, std::span<const Label* const> labels, std::int64_t frames) {
     std::vector<Array> arrays;
     for (const Label* const label : labels) {
         Dimensions shape = label->shape(film);
@@ -94,7 +89,6 @@ std::vector<Array> read_labels(Film& film, std::span<const Label* const> labels,
     }
     for (std::int64_t k = 0; k < frames; ++k) {
         check_cancelled();
-        if (visit) visit(film.state(k));
         for (std::size_t i = 0; i < labels.size(); ++i)
             labels[i]->append(film, k, film.state(k), arrays[i].data);
     }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,16 +27,12 @@ struct Label {
     void (*append)(Film& film, std::int64_t k, const State& state, std::string& data);
 };
 
-/// All labels. The first holds the times.
-[[nodiscard]] std::span<const Label> all_labels();
 /// Null for none.
 [[nodiscard]] const Label* find_label(std::string_view name);
 
-/// The arrays of the first `frames` frames. Calls `visit`, if there is one, with each state. Velocities,
-/// tensions and energy need a film whose states have velocities and tensions. Throws corda::Error as
-/// Film::state() and Film::mask(), kInterrupted if cancelled.
+/// The arrays of the first `frames` frames. Velocities, tensions and energy need a film whose states have
+/// velocities and tensions. Throws corda::Error as Film::state() and Film::mask(), kInterrupted if cancelled.
 [[nodiscard]] std::vector<Array> read_labels(Film& film, std::span<const Label* const> labels,
-                                             std::int64_t frames,
-                                             const std::function<void(const State&)>& visit = {});
+                                             std::int64_t frames);
 
 }  // namespace corda::python
