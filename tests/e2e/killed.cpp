@@ -111,6 +111,7 @@ TEST_F(Killed, WhatWasRemovedNamesWhatReplacesIt) {
               "the command \"study\" was removed; run python3 tests/benchmark/study.py"},
              {{"sweep", "sweep.toml", "-o", "data"},
               "the command \"sweep\" was removed; use python3 -m corda sweep"},
+             {{"help", "verify"}, "\"verify\" was removed; render checks each video"},
              {{"render", scene_, "-o", "a.mp4", "--shard", "0/2"},
               "the option --shard was removed; give each"},
              {{"render", scene_, "-o", "a.mp4", "--verify=full"},

@@ -274,7 +274,7 @@ def test_a_still_has_a_width_in_print(tmp_path):
     (["{scene}", "-o", "{out}", "--at", "x"], 2, "--at x: takes times in seconds"),
     (["{scene}", "-o", "{out}", "--frame", "30:32"], 2, "--frame 30:32: the frames are 0 to 29"),
     (["{scene}", "-o", "{out}", "--frame", "a"], 2, "--frame a: is neither a frame number nor a range"),
-    (["{scene}", "-o", "{out}", "--font-pt", "0"], 2, "--font-pt 0: takes 1 .. 100 points"),
+    (["{scene}", "-o", "{out}", "--font-pt", "0"], 2, "--font-pt 0: takes 1 .. 18 points"),
     (["{scene}", "-o", "{out}", "--fps", "0"], 2, "fps"),
     (["{scene}", "-o", "{out}", "--backend", "none"], 2, "backend \"none\" is unknown"),
     (["{scene}", "-o", "{out}", "--bogus"], 2, "--bogus"),

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "corda/core/removed.hpp"
 #include "corda/core/text.hpp"
 #include "corda/scene/schema.hpp"
 
@@ -92,6 +93,8 @@ std::string text_about(const CLI::App& app, const std::string& topic) {
     if (const CLI::App* const command = find_command(app, topic))
         return help_of(*command) + (keys.empty() ? "" : "\n" + keys);
     if (!keys.empty()) return keys;
+    if (const auto replacement = replacement_of(topic); !replacement.empty())
+        throw_usage("\"{}\" was removed; {}", topic, replacement);
     std::vector<std::string> topics = command_names(app);
     topics.emplace_back(kSceneTopic);
     topics.emplace_back(kManualTopic);

@@ -113,12 +113,14 @@ def period_theory(sweep, parameters, angle_deg):
 
 
 def _read_points(sweep, folder, y, x):
-    """The samples of a plot: dictionaries by the name of their series, and the parameters of the first of each."""
+    """The samples of a plot: the parameters of the first of each series by its name, a dictionary per point, the number of
+    samples that lack a figure, and whether points of a series lie on a curve."""
     keys = _series_keys(sweep, x)
-    series, points = {}, []
+    series, points, others = {}, [], 0
     for number, row in rows_of(sweep, folder):
         values = x.value(row), y.value(row)
         if None in values or "failure" in row:
+            others += 1
             continue
         parameters = row["parameters"]
         name = ", ".join(f"{_short_name(key)} = {value_text(parameters[key])}" for key in parameters if key in keys)
@@ -132,7 +134,7 @@ def _read_points(sweep, folder, y, x):
     is_curve = (x.name == "angle_max_deg" or _short_name(x.name) == "angle_deg") and all(
         key in keys or _short_name(key) == "angle_deg" or (isinstance(values, list) and len(values) == 1)
         for key, values in sweep.vary.items())
-    return series, points, is_curve
+    return series, points, others, is_curve
 
 
 def _literal(text):
@@ -161,7 +163,7 @@ def write_plot(sweep, folder, columns):
     """Draws Y over X of the finished samples as SVG, PDF, PNG and CSV in the folder; returns the paths. Raises Error: code 2 if
     no sample has both, and 6."""
     y, x = find_columns(sweep, columns)
-    series, points, is_curve = _read_points(sweep, folder, y, x)
+    series, points, others, is_curve = _read_points(sweep, folder, y, x)
     stem = os.path.join(folder, f"{_file_name(sweep, y)}-{_file_name(sweep, x)}")
     paths = []
     with style.context(["default", _STYLE]):  # whatever the user's matplotlibrc says
@@ -171,6 +173,8 @@ def write_plot(sweep, folder, columns):
         axes.set_xlabel(x.title())
         axes.set_ylabel(y.title())
         axes.set_title(_literal(os.path.splitext(os.path.basename(sweep.source))[0]), loc="left", fontsize=9.0)
+        if others:
+            axes.set_title(f"{others} of {others + len(points)} samples have no such figures", loc="right", fontsize=8.0)
         values = sweep.vary.get(x.name)
         if isinstance(values, Distribution) and values.shape == "log_uniform":
             axes.set_xscale("log")

@@ -94,8 +94,8 @@ def _frames(word, count):
 
 def _asked_times(options, film, facts):
     """The times of --at or --frame in s, increasing."""
-    if not 1.0 <= options.font_pt <= 100.0:
-        raise _error(f"--font-pt {options.font_pt:g}: takes 1 .. 100 points")
+    if not 1.0 <= options.font_pt <= 18.0:
+        raise _error(f"--font-pt {options.font_pt:g}: takes 1 .. 18 points")
     try:
         times = [float(word) for word in options.at.split(",")] if options.at else []
     except ValueError:
