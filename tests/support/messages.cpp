@@ -66,7 +66,7 @@ std::vector<Message> messages_of(std::string_view table) {
         if (line.empty() || line.starts_with("@")) continue;
         const auto cells = split((line.starts_with("| ") ? " " : "") + line, " | ");
         if (cells.size() < 3 || cells.size() > 4) throw std::runtime_error("no row of messages: " + line);
-        Message& message = messages.emplace_back(base + unescaped(cells[0]), cells[1], cells[2]);
+        Message& message = messages.emplace_back(Message{base + unescaped(cells[0]), cells[1], cells[2], {}});
         if (cells.size() < 4) continue;
         for (const std::string& remedy : split(cells[3], " ; "))
             message.remedied.push_back(remedied(message.input, remedy));
