@@ -1,8 +1,11 @@
-"""Files of a sweep: arrays as .npz, samples as .tar, and files that get their names when they are complete."""
+"""Files of sweeps and reports: arrays as .npz, samples as .tar, tables as .csv, and files that get their names when they are
+complete."""
 
 import contextlib
+import csv
 import hashlib
 import io
+import math
 import os
 import secrets
 import stat
@@ -11,7 +14,7 @@ import zipfile
 
 import numpy as np
 
-from ._corda import Error
+from . import _error
 
 _DATE = (1980, 1, 1, 0, 0, 0)  # the first that a .zip can hold
 _MAX_FILE_BYTES = 1 << 30
@@ -19,9 +22,7 @@ _MAX_FILE_BYTES = 1 << 30
 
 def io_error(action, path, error):
     """The Error (code 6) of an OSError."""
-    made = Error(f"cannot {action} '{path}': {error.strerror or error}")
-    made.code = 6
-    return made
+    return _error(f"cannot {action} '{path}': {error.strerror or error}", 6)
 
 
 def npz_bytes(arrays):
@@ -37,6 +38,22 @@ def npz_bytes(arrays):
     return file.getvalue()
 
 
+def _csv_cell(cell):
+    if cell is None or (isinstance(cell, float) and math.isnan(cell)):
+        return ""
+    return f"{cell:.17g}" if isinstance(cell, float) else cell
+
+
+def csv_text(head, rows):
+    """Rows of cells as CSV (RFC 4180, but with LF): numbers have 17 significant digits, so that reading them gives the same bits;
+    unknown ones are empty."""
+    table = io.StringIO()
+    writer = csv.writer(table, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows(map(_csv_cell, row) for row in rows)
+    return table.getvalue()
+
+
 def plain_size(path):
     """The bytes of an ordinary file of that name; None if there is none, or a link to one."""
     try:
@@ -48,9 +65,7 @@ def plain_size(path):
 
 def refuse_unusual(path):
     if os.path.lexists(path) and plain_size(path) is None:
-        error = Error(f"'{path}' is no ordinary file; move it away, or choose another folder")
-        error.code = 6
-        raise error
+        raise _error(f"'{path}' is no ordinary file; move it away, or choose another folder", 6)
 
 
 def read_plain(path):

@@ -7,6 +7,7 @@ import typing
 import numpy as np
 
 from . import plot
+from ._motion import first_turn, spread
 from ._theory import period_of
 
 
@@ -349,17 +350,6 @@ class Times(typing.NamedTuple):
     is_swing: bool = False  #: the strobe shows the first swing
 
 
-def _first_turn(path):
-    """The frame at which a path first turns back in x, a quarter of the way that it does in all from its start; None if it
-    does not."""
-    x = path[:, 0]
-    enough = 0.25 * np.ptp(x)
-    before, after = np.diff(x)[:-1], np.diff(x)[1:]
-    turns = (before * after < 0.0) | ((before != 0.0) & (after == 0.0))
-    at = np.flatnonzero(turns & (np.abs(x[1:-1] - x[0]) >= enough)) + 1
-    return int(at[0]) if enough > 0.0 and len(at) else None
-
-
 def drawing_times(motion, asked):
     """The times that were asked for, as far as the motion goes. Without any, the strobe has six from the start to where the
     first tracked particle first turns back in x, or else to the end; and the stills are five from the start to the end. All of
@@ -369,9 +359,5 @@ def drawing_times(motion, asked):
         times = sorted({time for time in asked if time <= end})
         return Times(times, times)
 
-    def spread(last, count):
-        return list(dict.fromkeys(float(motion.times[int(last * i / (count - 1) + 0.5)]) for i in range(count)))
-
-    last = len(motion.times) - 1
-    turn = _first_turn(motion.tracks[0].position) if motion.tracks else None
-    return Times(spread(last if turn is None else turn, 6), spread(last, 5), turn is not None)
+    turn = first_turn(motion.tracks[0].position) if motion.tracks else None
+    return Times(spread(motion.times, turn, 6), spread(motion.times, None, 5), turn is not None)

@@ -9,7 +9,7 @@ import signal
 import sys
 import time
 
-from ._corda import Error
+from . import Error, _error
 
 _SECONDS_BETWEEN_BARS = 0.1
 _SECONDS_BETWEEN_LINES = 2.0
@@ -68,9 +68,7 @@ def print_result(text):
     except OSError as error:
         if sys.stdout is not None:
             _discard(sys.stdout)
-        made = Error(f"writing to standard output: {error.strerror}")
-        made.code = 6
-        raise made from None
+        raise _error(f"writing to standard output: {error.strerror}", 6) from None
 
 
 def _print_message(text, end="\n"):

@@ -136,6 +136,23 @@ def hermite_slope(times, values, slopes, count):
     return np.concatenate([inside.reshape(-1, *values.shape[1:]), slopes[-1:]])
 
 
+def first_turn(path):
+    """The frame at which a path (frames, 2) first turns back in x, a quarter of its whole way in x or more from its start; None
+    if there is none."""
+    x = path[:, 0]
+    enough = 0.25 * np.ptp(x)
+    before, after = np.diff(x)[:-1], np.diff(x)[1:]
+    turns = (before * after < 0.0) | ((before != 0.0) & (after == 0.0))
+    at = np.flatnonzero(turns & (np.abs(x[1:-1] - x[0]) >= enough)) + 1
+    return int(at[0]) if enough > 0.0 and len(at) else None
+
+
+def spread(times, last, count):
+    """Up to `count` of the times, evenly spread from the first to number `last`; None: to the last of all."""
+    last = len(times) - 1 if last is None else last
+    return list(dict.fromkeys(float(times[int(last * i / (count - 1) + 0.5)]) for i in range(count)))
+
+
 def _root(function, count):
     """Where each of `count` functions of 0 .. 1 changes its sign, by bisection."""
     low, high = np.zeros(count), np.ones(count)

@@ -7,7 +7,8 @@ import math
 
 import numpy as np
 
-from ._corda import Error, __version__
+from . import _error
+from ._corda import __version__
 from ._sweep_file import Distribution, number_text, toml_of
 
 _MAX_TRIES = 1000
@@ -63,9 +64,8 @@ def _draw(distribution, component, random, key):
         value = _rounded(first + second * random.normal())
         if distribution.min[component] <= value <= distribution.max[component]:
             return value
-    error = Error(f'vary."{key}": of {_MAX_TRIES} numbers of the normal distribution none was within its bounds; give wider bounds')
-    error.code = 3
-    raise error
+    raise _error(f'vary."{key}": of {_MAX_TRIES} numbers of the normal distribution none was within its bounds; give wider '
+                 "bounds", 3)
 
 
 def parameters_of(sweep, sample):

@@ -12,7 +12,7 @@ import signal
 import threading
 import time
 
-from . import _shards
+from . import _error, _shards
 from ._archive import read_plain, sha256_of
 from ._corda import Error
 from ._sample import make_sample
@@ -119,8 +119,8 @@ def _packed_by_processes(definition, gl, numbers, count, jobs):
         pool.shutdown()
     except concurrent.futures.BrokenExecutor:
         time.sleep(_SIGNALS_APART_S)  # a signal to this process, too, is raised here and tells more
-        raise _shards.error_of(75, "a process that makes samples was killed; a smaller scene or picture, or fewer jobs, may help "
-                               "if memory ended") from None
+        raise _error("a process that makes samples was killed; a smaller scene or picture, or fewer jobs, may help "
+                               "if memory ended", 75) from None
     finally:
         for process in set(multiprocessing.active_children()) - others:
             process.terminate()

@@ -3,14 +3,13 @@ src/corda/python/README.md describes them. They may be of any origin. Functions 
 written, 2 for those of another sweep."""
 
 import contextlib
-import csv
-import io
 import json
 import os
 import re
 
-from ._archive import OutputFile, TarWriter, io_error, npz_bytes, plain_size, read_plain, save_file
-from ._corda import Error, __version__
+from . import _error
+from ._archive import OutputFile, TarWriter, csv_text, io_error, npz_bytes, plain_size, read_plain, save_file
+from ._corda import __version__
 from ._parameters import hash_text, identity_of
 from ._sweep_file import is_number, value_text
 
@@ -18,12 +17,6 @@ _MANIFEST = "manifest.json"
 _METADATA = "metadata.csv"
 _MAX_NAMED = 20
 _MAX_SHOWN = 64
-
-
-def error_of(code, message):
-    error = Error(message)
-    error.code = code
-    return error
 
 
 def shard_count(sweep):
@@ -115,12 +108,12 @@ def _require_same(sweep, origin, path):
             changes.append(f"{key} has other values" if is_long else f"{key} is {now} and was {before}")
     if changes:
         more = f", and {len(changes) - _MAX_NAMED} more" if len(changes) > _MAX_NAMED else ""
-        raise error_of(2, f"'{path}' is of another sweep: {', '.join(changes[:_MAX_NAMED])}{more}; choose another folder, move it "
+        raise _error(f"'{path}' is of another sweep: {', '.join(changes[:_MAX_NAMED])}{more}; choose another folder, move it "
                        "away, or replace all shards (--force)")
 
 
 def _fail_larger(path):
-    raise error_of(2, f"'{path}' is of a sweep of more samples; move it away, or replace all shards (--force)")
+    raise _error(f"'{path}' is of a sweep of more samples; move it away, or replace all shards (--force)")
 
 
 def _manifest_origin(folder):
@@ -130,7 +123,7 @@ def _manifest_origin(folder):
         return None
     origin = _origin_of(_read_json(path))
     if origin is None:
-        raise error_of(6, f"'{path}' is no manifest of a sweep; move it away, or choose another folder")
+        raise _error(f"'{path}' is no manifest of a sweep; move it away, or choose another folder", 6)
     return origin
 
 
@@ -148,8 +141,8 @@ def open_folder(sweep, folder, force):
         if origin is None and name.endswith(".json"):
             origin = _origin_of(_read_json(os.path.join(folder, name)))
     if origin is None and files:
-        raise error_of(6, f"'{os.path.join(folder, files[0])}' is there, and no manifest of a sweep; move it away, or choose "
-                       "another folder")
+        raise _error(f"'{os.path.join(folder, files[0])}' is there, and no manifest of a sweep; move it away, or choose "
+                       "another folder", 6)
     if not has_manifest:
         with OutputFile(manifest_path(folder)) as file:
             file.write(json_text(_empty_manifest(sweep)).encode())
@@ -259,16 +252,14 @@ def _csv_row(sweep, shard, row):
 
 def summary_of(sweep, folder):
     """The contents of metadata.csv and manifest.json as text; None if a shard is not finished."""
-    table = io.StringIO()
-    rows = csv.writer(table, lineterminator="\n")
-    rows.writerow(["key", "shard", "split", *sweep.vary, *sweep.summary, "failure"])
+    table = []
     shards, failures, splits = [], [], {}
     for shard in range(shard_count(sweep)):
         index = find_index(sweep, folder, shard)
         if index is None:
             return None
         for row in index["rows"]:
-            rows.writerow(_csv_row(sweep, shard, row))
+            table.append(_csv_row(sweep, shard, row))
             if "failure" in row:
                 failures.append({"key": row["key"], "failure": row["failure"]})
             elif sweep.splits:
@@ -278,7 +269,8 @@ def summary_of(sweep, folder):
                        "samples": len(index["rows"]) - failed, "failed": failed})
     manifest = _empty_manifest(sweep) | {"complete": True, "samples": sweep.samples - len(failures), "failed": len(failures),
                                          "splits": splits, "shards": shards, "failures": failures}
-    return table.getvalue(), manifest
+    head = ["key", "shard", "split", *sweep.vary, *sweep.summary, "failure"]
+    return csv_text(head, table), manifest
 
 
 def rows_of(sweep, folder):

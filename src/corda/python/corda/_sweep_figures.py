@@ -1,6 +1,5 @@
 """Figures of a sweep by matplotlib: plots of one column over another, and a contact sheet."""
 
-import csv
 import io
 import math
 import os
@@ -8,24 +7,25 @@ import re
 
 import numpy as np
 
-from . import _corda, _parameters, _theory
-from ._archive import save_file
+from . import _corda, _error, _parameters, _theory
+from ._archive import csv_text, save_file
 from ._corda import Error
+from ._motion import first_turn, spread
 from ._sample import REFUSALS
-from ._shards import error_of, rows_of
+from ._shards import rows_of
 from ._sweep_file import Distribution, is_number, section_of, short_text, value_text
 
 try:
     from matplotlib import style
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
+
+    from .plot import _COLORS, _plain
 except ImportError:
-    raise error_of(2, "--plot and --sheet need matplotlib, which is not installed for this Python; install the package "
+    raise _error("--plot and --sheet need matplotlib, which is not installed for this Python; install the package "
                    "python3-matplotlib (apt-get install python3-matplotlib, or pip install matplotlib)") from None
 
 _UNITS = {"_m_s": "m/s", "_s": "s", "_deg": "°", "_n": "N", "_px": "px", "_m": "m"}
-# Colours that colour-blind readers can tell apart on white (after Okabe and Ito 2008, without their yellow and black).
-_COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5fd0", "#8c6d31")
 _STYLE = {"font.size": 9.0, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True,
           "grid.color": "#dddddd", "grid.linewidth": 0.5, "legend.frameon": False, "svg.hashsalt": "corda", "savefig.dpi": 300}
 _PAGE_MM = 170.0
@@ -68,7 +68,7 @@ def find_columns(sweep, text):
     """The columns of "Y:X". Raises Error (code 2)."""
     y, colon, x = text.partition(":")
     if not colon:
-        raise error_of(2, f"--plot {short_text(text)}: is not Y:X, such as period_s:angle_max_deg")
+        raise _error(f"--plot {short_text(text)}: is not Y:X, such as period_s:angle_max_deg")
     return _find_column(sweep, y), _find_column(sweep, x)
 
 
@@ -78,7 +78,7 @@ def _find_column(sweep, name):
     if len(found) == 1:
         return found[0]
     problem = "several columns are named" if found else "there is no column"
-    raise error_of(2, f'--plot: {problem} "{short_text(name)}"; give Y:X, two of {", ".join([*sweep.summary, *sweep.vary])}')
+    raise _error(f'--plot: {problem} "{short_text(name)}"; give Y:X, two of {", ".join([*sweep.summary, *sweep.vary])}')
 
 
 def _file_name(sweep, column):
@@ -129,7 +129,7 @@ def _read_points(sweep, folder, y, x):
         theory = period_theory(sweep, parameters, angle_deg) if y.name == "period_s" and is_number(angle_deg) else None
         points.append({"key": _parameters.key_of(number), "series": name, "x": values[0], "y": values[1], "theory": theory})
     if not points:
-        raise error_of(2, f"--plot {y.name}:{x.name}: no finished sample in '{folder}' has both figures (a period needs two "
+        raise _error(f"--plot {y.name}:{x.name}: no finished sample in '{folder}' has both figures (a period needs two "
                        "passes below the only pin)")
     is_curve = (x.name == "angle_max_deg" or _short_name(x.name) == "angle_deg") and all(
         key in keys or _short_name(key) == "angle_deg" or (isinstance(values, list) and len(values) == 1)
@@ -137,17 +137,12 @@ def _read_points(sweep, folder, y, x):
     return series, points, others, is_curve
 
 
-def _literal(text):
-    """A text that matplotlib shows as it is, without mathematics between dollar signs."""
-    return text.replace("$", r"\$")
-
-
 def _draw_points(sweep, axes, series, points, is_curve):
     for i, (name, parameters) in enumerate(series.items()):
         own = [point for point in points if point["series"] == name]
         color = _COLORS[i % len(_COLORS)]
         known = [(point["x"], point["theory"]) for point in own if point["theory"] is not None]
-        shown = _literal(name)
+        shown = _plain(name)
         label = f"theory, {shown}" if name else "theory"
         if known and is_curve:
             angles = np.linspace(min(known)[0], max(known)[0], _CURVE_POINTS + 1)
@@ -172,7 +167,7 @@ def write_plot(sweep, folder, columns):
         _draw_points(sweep, axes, series, points, is_curve)
         axes.set_xlabel(x.title())
         axes.set_ylabel(y.title())
-        axes.set_title(_literal(os.path.splitext(os.path.basename(sweep.source))[0]), loc="left", fontsize=9.0)
+        axes.set_title(_plain(os.path.splitext(os.path.basename(sweep.source))[0]), loc="left", fontsize=9.0)
         if others:
             axes.set_title(f"{others} of {others + len(points)} samples have no such figures", loc="right", fontsize=8.0)
         values = sweep.vary.get(x.name)
@@ -184,31 +179,18 @@ def write_plot(sweep, folder, columns):
             figure.savefig(file, format=extension, metadata={date: None})
             paths.append(f"{stem}.{extension}")
             save_file(paths[-1], file.getvalue())
-    table = io.StringIO()
-    rows = csv.writer(table, lineterminator="\n")
-    rows.writerow(["key", "series", x.name, y.name, "theory"])
-    for point in points:
-        numbers = ["" if number is None else f"{number:.17g}" for number in (point["x"], point["y"], point["theory"])]
-        rows.writerow([point["key"], point["series"], *numbers])
+    rows = [[point[name] for name in ("key", "series", "x", "y", "theory")] for point in points]
     paths.append(f"{stem}.csv")
-    save_file(paths[-1], table.getvalue().encode())
+    save_file(paths[-1], csv_text(["key", "series", x.name, y.name, "theory"], rows).encode())
     return paths
 
 
 def _first_swing(film):
-    """Six frame times from the start to where the tracked particle first turns back in x, having moved a quarter of the way that
-    it does in all, or else to the end."""
-    facts = _corda.sample_facts(film)
+    """Six frame times from the start to the first turn of the tracked particle, or else to the end."""
+    particle = _corda.sample_facts(film)["particle"]
     arrays = _corda.labels(film, ["times", "positions"])
-    times, last = arrays["times"], len(arrays["times"]) - 1
-    if facts["particle"] is not None:
-        x = arrays["positions"][:, facts["particle"], 0]
-        before, after = np.diff(x)[:-1], np.diff(x)[1:]
-        turns = (before * after < 0.0) | ((before != 0.0) & (after == 0.0))
-        far = (np.abs(x - x[0]) >= 0.25 * (x.max() - x.min())) & (x.max() > x.min())
-        found = np.flatnonzero(turns & far[1:-1]) + 1
-        last = int(found[0]) if len(found) else last
-    return [float(times[k]) for k in sorted({math.floor(last * i / (_POSES - 1) + 0.5) for i in range(_POSES)})]
+    turn = None if particle is None else first_turn(arrays["positions"][:, particle])
+    return spread(arrays["times"], turn, _POSES)
 
 
 def _cell(sweep, number, gl):

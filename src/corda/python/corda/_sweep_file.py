@@ -10,7 +10,7 @@ import re
 import sys
 import tomllib
 
-from . import _corda, _path
+from . import _corda, _error, _path
 from ._corda import Error
 
 MAX_SAMPLES = 1_000_000_000
@@ -431,12 +431,6 @@ def _key_problem(key):
     meant = nearest(name, list(keys))
     return (f'no key of a scene; did you mean "{meant}" in place of "{short_text(name)}"?' if meant else
             "no key of a scene (see corda help scene)")
-
-
-def _error(message, code):
-    error = Error(message)
-    error.code = code
-    return error
 
 
 def _read_text(path, what):

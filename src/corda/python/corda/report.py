@@ -15,7 +15,7 @@ import time
 import numpy as np
 
 from . import Error, Film, __version__, _console, _corda, _error
-from ._archive import save_file
+from ._archive import csv_text, save_file
 from ._motion import motion_of
 
 #: Widths of figures in print, a column and a page of a journal, and the resolution of PNGs in pixels per inch.
@@ -145,20 +145,6 @@ class Folder:
 
 
 # CSV files.
-
-
-def _csv_cell(cell):
-    if cell is None or (isinstance(cell, float) and math.isnan(cell)):
-        return ""
-    if isinstance(cell, float):
-        return f"{cell:.17g}"
-    return f'"{cell.replace(chr(34), chr(34) * 2)}"' if any(c in cell for c in ',"\r\n') else cell
-
-
-def csv_text(keys, rows):
-    """Rows of cells as CSV (RFC 4180, but with LF): numbers have 17 significant digits, so that reading them gives the same bits;
-    unknown ones are empty."""
-    return "".join(",".join(map(_csv_cell, row)) + "\n" for row in [keys, *rows])
 
 
 def _columns(motion):

@@ -10,8 +10,7 @@ import os
 import time
 import warnings
 
-from . import _console, _corda, _gl, _sample, _sweep_file
-from ._corda import Error
+from . import _console, _corda, _error, _gl, _sample, _sweep_file
 
 __all__ = ["Sweep"]
 
@@ -68,9 +67,7 @@ class Sweep:
             raise IndexError(f"there is no sample {index}: the sweep has {len(self)}") from None
         sample = self._make(number)
         if sample.failure:
-            error = Error(self._failure_text(sample))
-            error.code = sample.failure[0]
-            raise error
+            raise _error(self._failure_text(sample), sample.failure[0])
         return _dictionary(sample)
 
     def __iter__(self):
@@ -88,9 +85,7 @@ class Sweep:
         except TypeError:
             raise TypeError(f"shard: takes two integers, index and count, not {index!r} and {count!r}") from None
         if not 0 <= index < count:
-            error = Error(f"shard: takes index and count with 0 <= index < count, not {index} and {count}")
-            error.code = 2
-            raise error
+            raise _error(f"shard: takes index and count with 0 <= index < count, not {index} and {count}")
         return self._of(_shard_numbers(self._numbers, self._definition.shard_samples, index, count))
 
     def parameters(self, index):
@@ -244,9 +239,7 @@ def _tell(console, definition, result, wall_s):
                      f"{result.samples_made / wall_s:.1f} per second")
     first = f"the first, {result.first_failure}, by {definition.source}"
     if result.is_complete and result.failed == definition.samples:
-        error = Error(f"all samples were refused; {first}")
-        error.code = 3
-        raise error
+        raise _error(f"all samples were refused; {first}", 3)
     if result.failed:
         console.warning(f'{counted(result.failed, "sample")} refused, see column "failure" of metadata.csv; {first}')
     if not result.is_complete:
