@@ -158,9 +158,9 @@ TEST_F(ExitCodes, SixIfTheFolderIsRemovedMidway) {
     const std::string folder = folder_.file("gone");
     const auto result =
         run_shell("mkdir " + folder + "; " + test::quoted(CORDA_PROGRAM) + " render " + scene_ + " -o " +
-                  folder + "/out.mp4 --duration 20 --size 320x180 & pid=$!; until ls " + folder +
-                  "/out.mp4.*.tmp >/dev/null 2>&1 || ! kill -0 $pid; do sleep 0.01; done; mv " + folder +
-                  " " + folder + ".removed; wait $pid");
+                  folder + "/out.mp4 --duration 20 --size 320x180 & pid=$!; " +
+                  test::wait_until("ls " + folder + "/out.mp4.*.tmp") + "mv " + folder + " " + folder +
+                  ".removed; wait $pid");
     EXPECT_EQ(result.exit_code, 6) << result.err;
 }
 
@@ -260,9 +260,8 @@ TEST_F(ExitCodes, OneHundredFortyThreeWhenTerminatedWhilePlanning) {
         "schema = 1\n[[net]]\ngrid = { columns = 80, rows = 60, spacing = 0.1, diagonals = false }\n"
         "pinned = [[0, 0]]\n");
     const auto result =
-        run_shell(test::quoted(CORDA_PROGRAM) + " render " + net + " -o " + video_ +
-                  " & pid=$!; while kill -0 $pid 2>/dev/null && ! grep -q '^SigCgt:.*[2367abef]$' "
-                  "/proc/$pid/status; do sleep 0.01; done; kill -TERM $pid; wait $pid");
+        run_shell(test::quoted(CORDA_PROGRAM) + " render " + net + " -o " + video_ + " & pid=$!; " +
+                  test::wait_until_listening() + "kill -TERM $pid; wait $pid");
     EXPECT_EQ(result.exit_code, 143) << result.err;
     EXPECT_THAT(result.err, HasSubstr("interrupted; nothing was written"));
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"net.toml", "scene.toml"}));

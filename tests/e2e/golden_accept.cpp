@@ -198,11 +198,11 @@ TEST_F(GoldenReview, CompletesWhatAKillCutOff) {
     EXPECT_EQ(draw_new().exit_code, 7);
     const auto before = references();
     const std::string second = reference(kMiddle) + ".*.tmp";
-    const auto killed = test::run_shell(
-        "LD_PRELOAD=" FOREIGN_FAULTS " FSYNC_BLOCKS_AFTER='" + second + "' FSYNC_BLOCKS_UNTIL=/never " +
-        test::quoted(CORDA_PROGRAM) + " golden " + folder_.file("scenes") + " --dir " + folder_.file("ref") +
-        " --accept " + fresh() + " & pid=$!; until ls " + second +
-        " >/dev/null 2>&1 || ! kill -0 $pid; do sleep 0.01; done; kill -9 $pid; wait $pid");
+    const auto killed =
+        test::run_shell("LD_PRELOAD=" FOREIGN_FAULTS " FSYNC_BLOCKS_AFTER='" + second +
+                        "' FSYNC_BLOCKS_UNTIL=/never " + test::quoted(CORDA_PROGRAM) + " golden " +
+                        folder_.file("scenes") + " --dir " + folder_.file("ref") + " --accept " + fresh() +
+                        " & pid=$!; " + test::wait_until("ls " + second) + "kill -9 $pid; wait $pid");
     EXPECT_EQ(killed.exit_code, 137);
     const auto cut = references();
     EXPECT_EQ(cut[0], read_file(fresh(kStart)));

@@ -59,12 +59,9 @@ TEST_F(Killed, AtAnyMomentAVideoIsTheOldOneOrWhole) {
         test::write_file(file("a.mp4"), "precious");
         const double after_s = moment_s(random);
         // From the first byte of the video on in half of the cases.
-        const std::string from = i % 2 == 0
-                                     ? "until ls " + file("a.mp4") +
-                                           ".*.tmp >/dev/null 2>&1 || ! kill -0 $p; do sleep 0.01; done; "
-                                     : "";
-        static_cast<void>(run_shell(render("a.mp4", "--force") + " & p=$!; " + from + "sleep " +
-                                    std::to_string(after_s) + "; kill -KILL $p; wait $p"));
+        const std::string from = i % 2 == 0 ? test::wait_until("ls " + file("a.mp4") + ".*.tmp") : "";
+        static_cast<void>(run_shell(render("a.mp4", "--force") + " & pid=$!; " + from + "sleep " +
+                                    std::to_string(after_s) + "; kill -KILL $pid; wait $pid"));
         const std::string found = read_file(file("a.mp4"));
         EXPECT_TRUE(found == "precious" || found == whole) << after_s;
     }
@@ -72,9 +69,9 @@ TEST_F(Killed, AtAnyMomentAVideoIsTheOldOneOrWhole) {
 
 TEST_F(Killed, ASequenceOfPicturesGoesOnWithThoseThatAreThere) {
     ASSERT_EQ(run_shell(render("whole/%03d.png")).exit_code, 0);
-    static_cast<void>(run_shell(render("frames/%03d.png") + " & p=$!; until [ -e " + file("frames/004.png") +
-                                " ]; do sleep 0.01; done; kill -KILL $p; wait $p; rm -f " + file("frames") +
-                                "/*.tmp"));
+    static_cast<void>(run_shell(render("frames/%03d.png") + " & pid=$!; " +
+                                test::wait_until("test -e " + file("frames/004.png")) +
+                                "kill -KILL $pid; wait $pid; rm -f " + file("frames") + "/*.tmp"));
     // Two machines share the rest; then all are there.
     for (const char* const part : {"0:70", "70:120"})
         EXPECT_EQ(run_shell(render("frames/%03d.png", std::string("--resume --frames ") + part)).exit_code,

@@ -14,6 +14,8 @@ namespace corda {
 namespace {
 
 using test::run_shell;
+using test::wait_until;
+using test::wait_until_listening;
 using testing::HasSubstr;
 
 const char* const kSceneOfSignals = R"(schema = 1
@@ -28,16 +30,10 @@ size = [640, 360]
 fps = 30
 )";
 
-/// Shell commands that wait until `condition` holds or the program has ended. bash may have reaped it by
-/// then, and another process may take its number: so it is asked each time whether it is there.
-std::string until(const std::string& condition) {
-    return "while kill -0 $pid 2>/dev/null && ! " + condition + "; do sleep 0.01; done; ";
+/// Waits until the program's one thread sleeps, in a call that waits for another program.
+std::string wait_until_asleep() {
+    return wait_until("grep '^State:.S' /proc/$pid/status");
 }
-
-/// Waits until the program has a handler for SIGINT (2), the second bit in the last digit of the mask.
-const std::string kUntilListening = until("grep -q '^SigCgt:.*[2367abef]$' /proc/$pid/status");
-/// Waits until its one thread sleeps, in a call that waits for another program.
-const std::string kUntilAsleep = until("grep -q '^State:.S' /proc/$pid/status");
 
 /// Runs `corda ARGUMENTS &`, then the shell commands `then`, and waits for its end.
 test::CommandResult run_and(const std::string& arguments, const std::string& then) {
@@ -56,8 +52,8 @@ TEST_F(Signals, EndTheWaitForTheWriterOfAPipe) {
     for (const std::string& arguments : {"plan " + pipe, "compare " + pipe + " " + pipe}) {
         for (const auto& [signal, exit_code] : {std::pair{"INT", 130}, {"TERM", 143}, {"HUP", 129}}) {
             // The shell opens the pipe once the program has, and keeps it open.
-            const auto end = run_and(arguments, "exec 3> " + pipe + "; printf schema >&3; " + kUntilAsleep +
-                                                    "kill -" + signal + " $pid; ");
+            const auto end = run_and(arguments, "exec 3> " + pipe + "; printf schema >&3; " +
+                                                    wait_until_asleep() + "kill -" + signal + " $pid; ");
             EXPECT_EQ(end.exit_code, exit_code) << arguments << end.err;
         }
     }
@@ -68,7 +64,7 @@ TEST_F(Signals, StayIgnoredIfIgnoredAtTheStart) {
     const std::string table = folder_.file("a.csv");
     const auto kept =
         run_shell("trap '' HUP; " + test::quoted(CORDA_PROGRAM) + " simulate " + scene_ + " -o " + table +
-                  " & pid=$!; " + kUntilListening + "kill -HUP $pid; wait $pid");
+                  " & pid=$!; " + wait_until_listening() + "kill -HUP $pid; wait $pid");
     EXPECT_EQ(kept.exit_code, 0) << kept.err;
     EXPECT_TRUE(std::filesystem::exists(table));
 }
@@ -101,7 +97,7 @@ TEST_F(Signals, EndARenderAndLeaveNothing) {
         const std::string video = folder_.file(name);
         test::write_file(video, "precious");
         const auto end = run_and("render --force " + scene_ + " -o " + video,
-                                 until("ls " + video + ".*.tmp") + "kill -TERM $pid; ");
+                                 wait_until("ls " + video + ".*.tmp") + "kill -TERM $pid; ");
         EXPECT_EQ(end.exit_code, 143) << end.err;
         EXPECT_THAT(end.err, HasSubstr("interrupted; " + video + " was not written"));
         EXPECT_EQ(test::read_file(video), "precious");
@@ -113,7 +109,7 @@ TEST_F(Signals, EndARenderAndLeaveNothing) {
 TEST_F(Signals, EndASequenceOfPicturesThatResumeContinues) {
     const std::string frames = folder_.file("frames");
     const std::string render = "render " + scene_ + " -o " + frames + "/%04d.png";
-    const auto end = run_and(render, until("test -e " + frames + "/0005.png") + "kill -INT $pid; ");
+    const auto end = run_and(render, wait_until("test -e " + frames + "/0005.png") + "kill -INT $pid; ");
     EXPECT_EQ(end.exit_code, 130) << end.err;
     EXPECT_THAT(end.err, HasSubstr("frames are in " + frames + "/%04d.png (--resume draws the others)"));
     const std::string program = test::quoted(CORDA_PROGRAM) + " ";
@@ -129,7 +125,7 @@ TEST_F(Signals, EndASequenceOfPicturesThatResumeContinues) {
 TEST_F(Signals, KeepTheRowsOfATable) {
     const std::string table = folder_.file("a.csv");
     const auto end = run_and("simulate " + scene_ + " --duration 30000 -o " + table,
-                             kUntilListening + "kill -TERM $pid; ");
+                             wait_until_listening() + "kill -TERM $pid; ");
     EXPECT_EQ(end.exit_code, 143) << end.err;
     EXPECT_FALSE(std::filesystem::exists(table));
     EXPECT_THAT(end.err, testing::AnyOf(HasSubstr("a.csv.part"), HasSubstr("nothing was written")));
@@ -138,7 +134,7 @@ TEST_F(Signals, KeepTheRowsOfATable) {
 TEST_F(Signals, EndAStill) {
     // Simulating until then takes at least a second.
     const auto end = run_and("still " + scene_ + " --at 0,3e5 --duration 3e5 -o " + folder_.file("stills"),
-                             kUntilListening + "kill -INT $pid; ");
+                             wait_until_listening() + "kill -INT $pid; ");
     EXPECT_EQ(end.exit_code, 130) << end.err;
     EXPECT_THAT(end.err, HasSubstr("interrupted; nothing was written"));
 }
@@ -150,8 +146,9 @@ TEST_F(Signals, EndASuiteWithTheNumberOfItsPictures) {
         "suite.toml", std::string(kSceneOfSignals) + "[golden]\nsize = [1920, 1080]\nat = [" + times + "]\n");
     const std::string ref = folder_.file("ref");
     // Once it draws: then a driver is loaded.
-    const auto end = run_and("golden " + suite + " --dir " + ref + " --update",
-                             until("grep -qE 'swrast_dri|libgallium' /proc/$pid/maps") + "kill -INT $pid; ");
+    const auto end =
+        run_and("golden " + suite + " --dir " + ref + " --update",
+                wait_until("grep -E 'swrast_dri|libgallium' /proc/$pid/maps") + "kill -INT $pid; ");
     EXPECT_EQ(end.exit_code, 130) << end.err;
     EXPECT_THAT(end.err,
                 testing::ContainsRegex("interrupted after [0-9]+ of 400 pictures; nothing was written"));
@@ -163,8 +160,8 @@ TEST_F(Signals, TheSecondEndsAtOnce) {
     // Flushing the table takes ten minutes, despite the first signal.
     const auto end =
         run_shell("LD_PRELOAD=" FOREIGN_FAULTS " FSYNC_TAKES_MS=600000 " + test::quoted(CORDA_PROGRAM) +
-                  " simulate " + scene_ + " -o " + folder_.file("a.csv") + " & pid=$!; " + kUntilListening +
-                  "kill -TERM $pid; sleep 0.2; kill -INT $pid; wait $pid");
+                  " simulate " + scene_ + " -o " + folder_.file("a.csv") + " & pid=$!; " +
+                  wait_until_listening() + "kill -TERM $pid; sleep 0.2; kill -INT $pid; wait $pid");
     EXPECT_EQ(end.exit_code, 130) << end.err;
     EXPECT_FALSE(std::filesystem::exists(folder_.file("a.csv")));
 }
@@ -222,7 +219,7 @@ TEST_F(Signals, EndEveryCommandInTheMiddleOfAFrame) {
         for (const std::string& arguments :
              {"simulate " + scene, "plan " + scene, "render " + scene + " -o " + folder_.file("a.mp4"),
               "still " + scene + " --at 1 -o " + folder_.file("a.png")}) {
-            const auto end = run_and(arguments, kUntilListening + "sleep 0.3; kill -TERM $pid; ");
+            const auto end = run_and(arguments, wait_until_listening() + "sleep 0.3; kill -TERM $pid; ");
             EXPECT_EQ(end.exit_code, 143) << heavy.name << ", " << arguments << ": " << end.err;
         }
     }

@@ -35,6 +35,15 @@ CommandResult run_shell(const std::string& command) {
     return result;
 }
 
+std::string wait_until(const std::string& condition) {
+    return "while kill -0 $pid 2>/dev/null && ! " + condition + " >/dev/null 2>&1; do sleep 0.01; done; ";
+}
+
+std::string wait_until_listening() {
+    // Signal 2 is the second bit in the last digit of the mask.
+    return wait_until("grep '^SigCgt:.*[2367abef]$' /proc/$pid/status");
+}
+
 CommandResult run_corda(const std::vector<std::string>& arguments, const std::string& environment) {
     std::string command = environment + " " + quoted(CORDA_PROGRAM);
     for (const std::string& argument : arguments) command += " " + quoted(argument);

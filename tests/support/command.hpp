@@ -15,6 +15,13 @@ struct CommandResult {
 /// Runs a command with bash and waits for it.
 [[nodiscard]] CommandResult run_shell(const std::string& command);
 
+/// Commands for bash that wait until `condition`, a command, succeeds or process $pid has ended. bash may
+/// have reaped it by then, and another process may take its number: so it is asked each time whether it is
+/// there.
+[[nodiscard]] std::string wait_until(const std::string& condition);
+/// The same until the process has a handler for SIGINT.
+[[nodiscard]] std::string wait_until_listening();
+
 /// `text` quoted as one word of a shell command.
 [[nodiscard]] std::string quoted(const std::string& text);
 
