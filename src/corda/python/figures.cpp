@@ -133,14 +133,15 @@ Rows read_rows(Film& film) {
     const System& system = film.system();
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
         check_cancelled();
+        const State* read = nullptr;
         try {
-            static_cast<void>(film.state(k));
+            read = &film.state(k);
         } catch (const Error& error) {
             if (error.code() != ExitCode::kDiverged || k == 0) throw;
             rows.failure = error.what();
             break;
         }
-        const State& state = film.state(k);
+        const State& state = *read;
         rows.times_s.push_back(state.time_s);
         append_pairs(state.x_m, state.y_m, rows.positions_m);
         append_pairs(state.vx_m_s, state.vy_m_s, rows.velocities_m_s);
@@ -225,7 +226,7 @@ py::dict body_facts(const Film& film, const System& named, std::size_t b,
     return facts;
 }
 
-/// What the plan says in words.
+/// The plan in words.
 py::dict plan_facts(const Film& film, const std::optional<std::string>& estimate) {
     const Plan& plan = film.plan();
     const std::vector<MethodGroup> groups = groups_of(plan);

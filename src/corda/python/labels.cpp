@@ -89,8 +89,8 @@ std::vector<Array> read_labels(Film& film, std::span<const Label* const> labels,
     }
     for (std::int64_t k = 0; k < frames; ++k) {
         check_cancelled();
-        for (std::size_t i = 0; i < labels.size(); ++i)
-            labels[i]->append(film, k, film.state(k), arrays[i].data);
+        const State& state = film.state(k);
+        for (std::size_t i = 0; i < labels.size(); ++i) labels[i]->append(film, k, state, arrays[i].data);
     }
     return arrays;
 }

@@ -77,12 +77,17 @@ class PyPainter : NonCopyable {
     pid_t process_ = getpid();
 };
 
-/// The film of a scene with settings, which messages name with "vary"; its states have all fields.
+/// A scene with settings, which messages name with "vary".
+Scene sample_scene(const std::string& text, const std::string& source,
+                   const std::vector<std::string>& settings) {
+    return Asking().run([&] { return parse_scene(text, source, {}, {"vary", settings}); });
+}
+
+/// The film of a scene with settings; its states have all fields.
 std::unique_ptr<PyFilm> sample_film(const std::string& text, const std::string& source,
                                     const std::vector<std::string>& settings, const std::string& backend,
                                     bool require_gpu) {
-    const Scene scene = Asking().run([&] { return parse_scene(text, source, {}, {"vary", settings}); });
-    return std::make_unique<PyFilm>(scene, backend, require_gpu, true);
+    return std::make_unique<PyFilm>(sample_scene(text, source, settings), backend, require_gpu, true);
 }
 
 /// Arrays of all frames by the names of labels.
@@ -140,11 +145,12 @@ py::array_t<std::uint8_t> poses(PyFilm& film, const std::vector<double>& times_s
     return py::array_t<std::uint8_t>({image.height(), image.width(), 4}, image.data());
 }
 
-/// What theory knows the period of, from a scene alone: "point", "rod" or "rope", the number and the length
-/// in m of equal links, and the acceleration in m/s2; None for others. See period_of() in corda/_theory.py.
+/// The model of a scene whose period theory knows, from the scene alone: "point", "rod" or "rope", the number
+/// and the length in m of equal links, and the acceleration in m/s2; None for others. See period_of() in
+/// corda/_theory.py.
 py::object swing_of(const std::string& text, const std::string& source,
                     const std::vector<std::string>& settings) {
-    const Scene scene = Asking().run([&] { return parse_scene(text, source, {}, {"vary", settings}); });
+    const Scene scene = sample_scene(text, source, settings);
     if (scene.ropes.size() != 1 || !scene.nets.empty()) return py::none();
     const RopeDef& rope = scene.ropes.front();
     Vec2 gravity = scene.world.gravity_m_s2;
@@ -195,7 +201,7 @@ void add_sweep(py::module_& module) {
     });
     module.def("picture_size", [](const std::string& text, const std::string& source,
                                   const std::vector<std::string>& settings) {
-        const Scene scene = Asking().run([&] { return parse_scene(text, source, {}, {"vary", settings}); });
+        const Scene scene = sample_scene(text, source, settings);
         return std::pair(scene.video.width_px, scene.video.height_px);
     });
     // The encoder of an output, with the versions on which its bytes depend.
