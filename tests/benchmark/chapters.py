@@ -137,7 +137,7 @@ def bars_plot(rows, key, title):
 
 
 def findings(data):
-    """The source report's start and method beside a true rope and a rigid rod."""
+    """The source report's start and method, compared with a true rope and a rigid rod."""
     light, heavy = data["masses_under_gravity_kg"]
     about = ("The report's start and method: bars of reach 7, one sweep per step, a force of 9.8 N per particle. They are "
              "compared with the motion of a true rope, by method exact, and with that of a rigid rod, in closed form. Mass "

@@ -123,7 +123,7 @@ def page_text(title, chapters):
 
 
 def replace_file(path, data):
-    """Writes bytes or a text beside a file and renames it, so that the file is complete whenever it ends."""
+    """Writes bytes or a text to a temporary file and renames it, so that the file under its own name is always complete."""
     temporary = path.with_name(f"{path.name}.{secrets.token_hex(4)}.tmp")
     try:
         temporary.write_bytes(data.encode("utf-8") if isinstance(data, str) else data)

@@ -134,7 +134,7 @@ def write_own_page(folder, title, chapters):
 
 
 def write_parts(chapter, pages):
-    """Writes the parts of a chapter between their marks in pages, and the pictures that a page shows beside it."""
+    """Writes the parts of a chapter between their marks in pages, and the pictures that a page shows into its folder."""
     for part in chapter.parts:
         if part.failures and any(part.mark in marks_of(page.read_text(encoding="utf-8")) for page in pages):
             fail(1, f"part {part.mark} has runs that failed and is not written: {part.failures[0]}")

@@ -73,7 +73,7 @@ class Folder:
         return subprocess.Popen([*COMMAND, *self.arguments(name, "-q", *more)], stderr=subprocess.PIPE, text=True, **named)
 
     def sums(self, name):
-        """SHA-256 of every file by its name, but for the temporary files of killed processes."""
+        """SHA-256 of every file by its name, except the temporary files of killed processes."""
         return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in (self.path / name).iterdir()
                 if not file.name.endswith(".tmp")}
 

@@ -1,4 +1,4 @@
-"""Sweep files: what is read, what is refused and where, and the parameters that follow."""
+"""Sweep files: values read, errors with their places, and the parameters of samples."""
 
 import json
 import math

@@ -41,7 +41,7 @@ json swing_json(const SwingDef& def, const std::vector<State>& truth) {
     return row;
 }
 
-/// The report's update rates beside those of this machine.
+/// Update rates: the report's, and those of this machine.
 json measure_rates(const Options& options, const OnRun& on_run) {
     json rows = json::array();
     for (const auto& [particles, report_1_s] : reference::kReportRates) {

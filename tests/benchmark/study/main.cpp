@@ -56,7 +56,7 @@ std::string times_of(const Timing& timing) {
                        timing.repeats, 1e3 * timing.shortest_s);
 }
 
-/// A line on standard error with what is measured, every two seconds at most.
+/// Names the measurement in hand on standard error, every two seconds at most.
 OnRun show_progress(const std::string& chapter) {
     return [chapter, last_s = 0.0](const std::string& what) mutable {
         if (now_s() - last_s < 2.0) return;

@@ -41,7 +41,7 @@ import numpy as _np
 
 
 def _built_for():
-    """The versions of Python that the C++ halves beside this file are built for, such as "3.11"."""
+    """The versions of Python for which C++ halves are in this folder, such as "3.11"."""
     tags = [path.name.split("-")[1] for path in _pathlib.Path(__file__).parent.glob("_corda.cpython-*.so")]
     return sorted(f"{tag[0]}.{tag[1:]}" for tag in tags)
 
@@ -57,7 +57,6 @@ except ImportError:
 from ._corda import Error, __version__
 
 __all__ = ["Difference", "Error", "Film", "Sweep", "__version__", "compare", "read_png", "write_png"]
-
 
 
 def __getattr__(name):

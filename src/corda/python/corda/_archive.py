@@ -132,7 +132,7 @@ class OutputFile:
         return self.size
 
     def flush(self):
-        """Writes to the disk what was written so far."""
+        """Flushes all bytes so far to the disk."""
         try:
             self._file.flush()
             os.fsync(self._file.fileno())

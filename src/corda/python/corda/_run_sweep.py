@@ -52,7 +52,7 @@ class _Worker:
 
     definition = None
     gl = None
-    is_making = False  #: a signal may end what is being done
+    is_making = False  #: a signal may end the work in hand
     is_stopped = False
 
     @classmethod

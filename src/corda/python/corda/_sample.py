@@ -19,7 +19,7 @@ _local = threading.local()  # OpenGL belongs to a thread
 
 @dataclasses.dataclass
 class Sample:
-    """A sample, or the reason why there is none: then it has no more than the first five members."""
+    """A sample, or the reason why there is none: then the members after the fifth are None."""
 
     number: int
     key: str

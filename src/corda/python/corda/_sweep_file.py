@@ -23,7 +23,7 @@ _MAX_FILE_BYTES = 16 << 20
 _MAX_COMPONENTS = 1 << 16
 _LEAST_NORMAL = sys.float_info.min
 
-#: Of each distribution: whether a pair of numbers is sound, and what they are.
+#: By distribution: a test of its two numbers, and their description in messages.
 _SHAPES = {
     "uniform": (lambda low, high: low <= high and math.isfinite(high - low),
                 "is [least, largest], two numbers, the smaller first, or two vectors of one length"),
@@ -200,7 +200,7 @@ class _Places:
 
 
 class _Reader:
-    """Reads the tables of a sweep file into a Definition, and collects what is wrong in them."""
+    """Reads the tables of a sweep file into a Definition, and collects their problems."""
 
     def __init__(self, document, text, sweep):
         self._document = document

@@ -116,7 +116,7 @@ class _Plot:
 
 
 def _plain(text):
-    """A text of the scene for matplotlib, which would take what is between two dollar signs for a formula."""
+    """A text of the scene for matplotlib, which reads the text between two dollar signs as a formula."""
     return text.replace("$", r"\$")
 
 

@@ -154,7 +154,7 @@ TEST(NetDynamics, IsPreparedAndEliminatedInPartsThatCanBeCancelled) {
     net.derivative(net.initial_state().data(), slope.data());
     EXPECT_GE(checks, 2);
 
-    // An exception passes all callers, wherever it ends the work.
+    // A cancellation at any check reaches the caller.
     const auto make = [&] { NetDynamics(system, Forces(WorldDef{})); };
     checks = 0;
     make();
