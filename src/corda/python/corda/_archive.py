@@ -96,28 +96,30 @@ class OutputFile:
     file without commit. Counts its bytes in `size`, and sums them in `sha256`. Raises Error (code 6)."""
 
     def __init__(self, path):
-        self._file = None
-        self.temporary = f"{path}.{secrets.token_hex(4)}.tmp"
         refuse_unusual(path)
         self.path = path
+        self.temporary = f"{path}.{secrets.token_hex(4)}.tmp"
         self.size = 0
         self.sha256 = hashlib.sha256()
+        self._file = None
+
+    def __enter__(self):
+        """Opens the file here, since a signal may come between a constructor and `with`."""
         try:
             self._file = open(self.temporary, "xb")
         except OSError as error:
-            raise io_error("write", path, error) from None
-
-    def __enter__(self):
+            raise io_error("write", self.path, error) from None
+        except KeyboardInterrupt:
+            self.__exit__()
+            raise
         return self
 
     def __exit__(self, *_):
-        if self._file:
-            with contextlib.suppress(OSError):
+        with contextlib.suppress(OSError):
+            if self._file:
                 self._file.close()
         with contextlib.suppress(OSError):
             os.unlink(self.temporary)
-
-    __del__ = __exit__  # a signal may come between the constructor and `with`
 
     def write(self, data):
         try:
