@@ -7,7 +7,7 @@ foreach(header
         core/basics.hpp core/image.hpp core/rational.hpp
         golden/compare.hpp golden/check_golden.hpp testing.hpp
         media/defs.hpp
-        pipeline/film.hpp
+        film/film.hpp
         scene/scene.hpp
         sim/defs.hpp sim/simulation.hpp sim/system.hpp
         view/defs.hpp)

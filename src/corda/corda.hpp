@@ -16,7 +16,7 @@
 #include "corda/core/rational.hpp"
 #include "corda/golden/compare.hpp"
 #include "corda/media/defs.hpp"
-#include "corda/pipeline/film.hpp"
+#include "corda/film/film.hpp"
 #include "corda/scene/scene.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/simulation.hpp"

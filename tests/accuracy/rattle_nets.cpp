@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "corda/pipeline/film.hpp"
+#include "corda/film/film.hpp"
 #include "support/extended_motion.hpp"
 #include "support/nets.hpp"
 #include "support/solver_run.hpp"

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "corda/pipeline/film_renderer.hpp"
+#include "corda/film/film_renderer.hpp"
 
 namespace corda {
 namespace {

@@ -13,7 +13,7 @@
 #include <set>
 
 #include "corda/media/defs.hpp"
-#include "corda/pipeline/film_renderer.hpp"
+#include "corda/film/film_renderer.hpp"
 #include "support/command.hpp"
 #include "support/decode_video.hpp"
 #include "support/image_matchers.hpp"

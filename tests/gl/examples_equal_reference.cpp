@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "corda/pipeline/film.hpp"
-#include "corda/pipeline/scene_renderer.hpp"
+#include "corda/film/film.hpp"
+#include "corda/film/scene_renderer.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "support/draw_list_of.hpp"
 #include "support/files.hpp"
@@ -32,8 +32,8 @@ TEST_P(Examples, EqualTheReferenceByteForByte) {
             std::vector<Setting> settings{std::string("video.size=") + size};
             if (*width != '\0') settings.push_back(std::string("style.rope_width_px=") + width);
             const Scene scene = load_scene(GetParam(), settings);
-            pipeline::SceneRenderer renderer(scene, film.system(), "auto", false);
-            const pipeline::SceneRenderer::Use use(renderer);
+            film::SceneRenderer renderer(scene, film.system(), "auto", false);
+            const film::SceneRenderer::Use use(renderer);
             const CameraDef camera = renderer.fit(motion);
             for (const State& state : states) {
                 const view::Camera map = renderer.map_of(camera);

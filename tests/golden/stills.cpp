@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "corda/media/defs.hpp"
-#include "corda/pipeline/film.hpp"
+#include "corda/film/film.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/testing.hpp"
 #include "support/command.hpp"

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "corda/core/basics.hpp"
-#include "corda/pipeline/film.hpp"
+#include "corda/film/film.hpp"
 #include "support/files.hpp"
 
 namespace corda {

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "corda/pipeline/film.hpp"
-#include "corda/pipeline/live_plot_data.hpp"
-#include "corda/pipeline/motion_input.hpp"
-#include "corda/pipeline/plan_text.hpp"
+#include "corda/film/film.hpp"
+#include "corda/film/live_plot_data.hpp"
+#include "corda/film/motion_input.hpp"
+#include "corda/film/plan_text.hpp"
 #include "corda/sim/recording.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/camera.hpp"
@@ -26,7 +26,7 @@ inline void include(const State& state, std::vector<MotionBounds>& motion) {
 /// The live plots of a film.
 inline std::vector<view::PlotData> plotted_of(Film& film) {
     if (film.scene().overlay.plots.empty()) return {};
-    const pipeline::LivePlotData curves(film.scene(), film.system());
+    const film::LivePlotData curves(film.scene(), film.system());
     std::vector<MethodDef> methods;
     for (const BodyPlan& body : film.plan().bodies) methods.push_back(body.method);
     return curves.read(
@@ -108,7 +108,7 @@ inline view::DrawList draw_list_of(Film& film, double time_s) {
                                scene.video.width_px, scene.video.height_px);
     for (std::int64_t k = 0; k <= film.last_frame() && scene.style.arrows != Arrows::kNone; ++k)
         arrows.include(view.arrows().of(film.state(k)), false);
-    for (const double instant_s : pipeline::arrow_times_s(scene))
+    for (const double instant_s : film::arrow_times_s(scene))
         arrows.include(view.arrows().of(film.state_at(instant_s)), true);
     std::vector<view::Trail> trails(test::traced(film).size());
     const double trail_s = film.scene().style.trail_s;

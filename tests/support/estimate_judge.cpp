@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "corda/pipeline/film.hpp"
+#include "corda/film/film.hpp"
 
 namespace corda::test {
 namespace {

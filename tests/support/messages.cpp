@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "corda/pipeline/film.hpp"
+#include "corda/film/film.hpp"
 #include "support/failure.hpp"
 
 namespace corda::test {

@@ -14,8 +14,8 @@
 
 #include "console.hpp"
 #include "corda/core/basics.hpp"
-#include "corda/pipeline/film.hpp"
-#include "corda/pipeline/provenance.hpp"
+#include "corda/film/film.hpp"
+#include "corda/film/provenance.hpp"
 #include "corda/scene/scene.hpp"
 
 namespace corda::app {

@@ -18,8 +18,8 @@
 #include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/pipeline/film.hpp"
-#include "corda/pipeline/plan_text.hpp"
+#include "corda/film/film.hpp"
+#include "corda/film/plan_text.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {

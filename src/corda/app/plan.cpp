@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "corda/pipeline/plan_text.hpp"
+#include "corda/film/plan_text.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::app {

@@ -6,8 +6,8 @@
 
 #include "commands.hpp"
 #include "corda/core/machine.hpp"
-#include "corda/pipeline/motion.hpp"
-#include "corda/pipeline/plan_text.hpp"
+#include "corda/film/motion.hpp"
+#include "corda/film/plan_text.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::app {
@@ -60,7 +60,7 @@ void warn_of_horizon(const Console& console, const Film& film) {
             : " of " + body_name(film.system(), static_cast<std::size_t>(first - plan.bodies.begin()));
     if (first->diverges) {
         console.warning(fmt::format("the simulation{} diverges after {:.6g} s; {} may help", whose,
-                                    *plan.horizon_s, pipeline::divergence_advice(film.system())));
+                                    *plan.horizon_s, film::divergence_advice(film.system())));
     } else {
         const double tolerance_px = std::get<AutoDef>(film.scene().solver).tolerance_px;
         console.warning(fmt::format(

@@ -19,9 +19,9 @@
 #include "corda/media/format/file_kind.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/media/write/video_file.hpp"
-#include "corda/pipeline/film.hpp"
-#include "corda/pipeline/film_renderer.hpp"
-#include "corda/pipeline/plan_text.hpp"
+#include "corda/film/film.hpp"
+#include "corda/film/film_renderer.hpp"
+#include "corda/film/plan_text.hpp"
 #include "corda/view/colors.hpp"
 #include "interrupt.hpp"
 

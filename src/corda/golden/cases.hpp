@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "corda/golden/suite.hpp"
-#include "corda/pipeline/provenance.hpp"
+#include "corda/film/provenance.hpp"
 
 namespace corda::golden {
 

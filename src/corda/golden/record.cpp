@@ -6,7 +6,7 @@
 #include <array>
 
 #include "corda/core/text.hpp"
-#include "corda/pipeline/plan_text.hpp"
+#include "corda/film/plan_text.hpp"
 #include "corda/scene/write_scene.hpp"
 
 namespace corda::golden {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "corda/pipeline/film.hpp"
-#include "corda/pipeline/provenance.hpp"
+#include "corda/film/film.hpp"
+#include "corda/film/provenance.hpp"
 
 namespace corda::golden {
 

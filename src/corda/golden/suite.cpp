@@ -16,7 +16,7 @@
 #include "corda/golden/cases.hpp"
 #include "corda/golden/record.hpp"
 #include "corda/media/bytes.hpp"
-#include "corda/pipeline/film_renderer.hpp"
+#include "corda/film/film_renderer.hpp"
 
 namespace corda::golden {
 namespace {

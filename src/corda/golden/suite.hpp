@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "corda/golden/compare.hpp"
-#include "corda/pipeline/film.hpp"
+#include "corda/film/film.hpp"
 
 namespace corda::golden {
 

@@ -5,9 +5,9 @@
 #include <corda/core/direction.hpp>
 #include <corda/core/markup.hpp>
 #include <corda/core/text.hpp>
-#include <corda/pipeline/film_renderer.hpp>
-#include <corda/pipeline/plan_text.hpp>
-#include <corda/pipeline/tracked_particle.hpp>
+#include <corda/film/film_renderer.hpp>
+#include <corda/film/plan_text.hpp>
+#include <corda/film/tracked_particle.hpp>
 #include <corda/sim/recording.hpp>
 #include <corda/sim/solver.hpp>
 #include <corda/view/colors.hpp>
@@ -186,7 +186,7 @@ py::dict rows(PyFilm& film) {
 }
 
 py::dict body_facts(const Film& film, const System& named, std::size_t b,
-                    const std::vector<pipeline::TrackedParticle>& tracked) {
+                    const std::vector<film::TrackedParticle>& tracked) {
     const System& system = film.system();
     const Body& body = system.bodies[b];
     py::dict facts;
@@ -217,7 +217,7 @@ py::dict body_facts(const Film& film, const System& named, std::size_t b,
     facts["moves"] = false;
     for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i)
         if (!system.is_pinned(i)) facts["moves"] = true;
-    for (const pipeline::TrackedParticle& one : tracked) {
+    for (const film::TrackedParticle& one : tracked) {
         if (one.body != b) continue;
         facts["tracked"] = one.particle;
         facts["is_free_end"] = one.is_free_end;
@@ -255,7 +255,7 @@ py::dict facts(PyFilm& film) {
     const System named = named_in_files(scene, system);
     const std::vector<std::string> keys = body_keys(named);
     const std::vector<std::string> colors = curve_colors(scene, system.bodies.size());
-    const auto tracked = pipeline::tracked_particles(system);
+    const auto tracked = film::tracked_particles(system);
     py::dict all = plan_facts(shown, estimate);
     py::list bodies;
     for (std::size_t b = 0; b < system.bodies.size(); ++b) {

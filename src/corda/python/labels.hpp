@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "corda/pipeline/film.hpp"
+#include "corda/film/film.hpp"
 
 namespace corda::python {
 

@@ -3,7 +3,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include <corda/pipeline/film.hpp>
+#include <corda/film/film.hpp>
 
 #include <unistd.h>
 

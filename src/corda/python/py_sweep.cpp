@@ -1,8 +1,8 @@
 // The films of the samples of a sweep, and what its file is checked against: for corda/sweep.py.
 #include <corda/media/format/format.hpp>
-#include <corda/pipeline/film_renderer.hpp>
-#include <corda/pipeline/plan_text.hpp>
-#include <corda/pipeline/tracked_particle.hpp>
+#include <corda/film/film_renderer.hpp>
+#include <corda/film/plan_text.hpp>
+#include <corda/film/tracked_particle.hpp>
 #include <corda/scene/document.hpp>
 #include <corda/scene/schema.hpp>
 
@@ -66,14 +66,14 @@ class PyPainter : NonCopyable {
     }
 
   private:
-    pipeline::OwnedCanvas& canvas() {
+    film::OwnedCanvas& canvas() {
         if (process_ != getpid())
             static_cast<void>(canvas_.release());  // the parent's, which no child can use
         process_ = getpid();
         return canvas_;
     }
 
-    pipeline::OwnedCanvas canvas_;
+    film::OwnedCanvas canvas_;
     pid_t process_ = getpid();
 };
 
@@ -115,7 +115,7 @@ py::dict sample_facts(PyFilm& film) {
         static_cast<void>(shown.state(shown.last_frame()));
         return shown.diagnostics().largest;
     });
-    const auto tracked = pipeline::tracked_particles(film.constant().system());
+    const auto tracked = film::tracked_particles(film.constant().system());
     py::dict facts;
     facts["method"] = method_names(film.constant().plan());
     facts["strain_max"] = largest.strain;

@@ -16,8 +16,8 @@
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/media/bytes.hpp"
-#include "corda/pipeline/plan_text.hpp"
-#include "corda/pipeline/tracked_particle.hpp"
+#include "corda/film/plan_text.hpp"
+#include "corda/film/tracked_particle.hpp"
 #include "corda/scene/document.hpp"
 #include "corda/scene/read_file.hpp"
 #include "embedded_page.hpp"
@@ -94,7 +94,7 @@ std::int64_t number_in(const Request& request, std::string_view name) {
 
 /// A film, its renderer, and the OpenGL canvas that the next one takes over.
 struct Watch::Shown {
-    pipeline::OwnedCanvas canvas;
+    film::OwnedCanvas canvas;
     std::optional<Film> film;
     std::optional<FilmRenderer> renderer;
 };
@@ -278,7 +278,7 @@ void Watch::draw(std::int64_t k) {
 void Watch::read_curves() {
     constexpr std::int64_t kMaxPoints = 1200;
     Film& film = *shown_->film;
-    const auto tracked = pipeline::tracked_particles(film.system());
+    const auto tracked = film::tracked_particles(film.system());
     const std::int64_t stride = 1 + (film.frame_count() - 1) / kMaxPoints;
     Json curves = {{"t", Json::array()},
                    {"angle_deg", Json::array()},
@@ -289,7 +289,7 @@ void Watch::read_curves() {
         const State& state = film.state(k);
         curves["t"].push_back(film.time_s(k));
         if (!tracked.empty() && tracked.front().pin)
-            curves["angle_deg"].push_back(pipeline::turning_of(tracked.front(), state, nullptr).x * 180.0 /
+            curves["angle_deg"].push_back(film::turning_of(tracked.front(), state, nullptr).x * 180.0 /
                                           std::numbers::pi);
         const Energy energy = film.energy();
         curves["kinetic_j"].push_back(energy.kinetic_j);

@@ -13,7 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "corda/pipeline/film_renderer.hpp"
+#include "corda/film/film_renderer.hpp"
 #include "corda/serve/scene_numbers.hpp"
 #include "corda/serve/server.hpp"
 

@@ -168,7 +168,7 @@ struct Loads {
 namespace corda {
 
 /// Thrown by `sim` for a definition with a field outside its range and for a system that a method cannot
-/// run: an Error of code kInvalidScene. The message gives the physical reason; pipeline adds the name of the
+/// run: an Error of code kInvalidScene. The message gives the physical reason; film adds the name of the
 /// scene and, chosen by `reason()`, the keys of the scene file that would help.
 class Refusal : public Error {
   public:

@@ -12,7 +12,7 @@
 #include "corda/core/file.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/media/format/format.hpp"
-#include "corda/pipeline/film_renderer.hpp"
+#include "corda/film/film_renderer.hpp"
 #include "support/edge_quality.hpp"
 
 namespace corda::benchmark {

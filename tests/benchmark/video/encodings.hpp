@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "corda/pipeline/film.hpp"
+#include "corda/film/film.hpp"
 #include "corda/scene/scene.hpp"
 
 namespace corda::benchmark {

@@ -22,7 +22,7 @@
 #include "corda/media/encode/frame_maker.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/media/write/video_file.hpp"
-#include "corda/pipeline/film_renderer.hpp"
+#include "corda/film/film_renderer.hpp"
 #include "support/yuv420_image.hpp"
 
 namespace corda::benchmark {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmark/study/times.hpp"
-#include "corda/pipeline/film.hpp"
+#include "corda/film/film.hpp"
 #include "corda/scene/scene.hpp"
 
 namespace corda::benchmark {

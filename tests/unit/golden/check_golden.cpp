@@ -7,7 +7,7 @@
 #include <string>
 
 #include "corda/media/defs.hpp"
-#include "corda/pipeline/provenance.hpp"
+#include "corda/film/provenance.hpp"
 #include "corda/testing.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "corda/pipeline/film.hpp"
-#include "corda/pipeline/plan_text.hpp"
+#include "corda/film/film.hpp"
+#include "corda/film/plan_text.hpp"
 #include "unit/scene/support.hpp"
 
 namespace corda::scene {
