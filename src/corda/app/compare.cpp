@@ -41,32 +41,26 @@ bool is_png(const fs::path& path) {
     return path.extension() == ".png";
 }
 
-/// The figures of a difference; null if the sizes differ.
-nlohmann::json figures_json(const Difference& difference) {
-    const auto figure = [&](const nlohmann::json& value) {
-        return difference.same_size ? value : nlohmann::json();
-    };
-    return {{"equal", difference.equal},
-            {"same_size", difference.same_size},
-            {"max", figure(golden::max_json(difference))},
-            {"mean", figure(difference.mean)},
-            {"share", figure(difference.share)}};
+nlohmann::json json_of(const Difference& difference) {
+    nlohmann::json json = golden::figures_json(difference);
+    json.update({{"equal", difference.equal}, {"same_size", difference.same_size}});
+    return json;
 }
 
 /// A comparison of two pictures.
 struct ComparedPicture {
     Difference difference;
     bool passed = false;
-    std::string words;
+    PixelRect a;
+    PixelRect b;
 };
 
-std::string words_of(const ComparedPicture& compared, const Image& a, const Image& b) {
-    const Difference& difference = compared.difference;
+std::string text_of(const ComparedPicture& compared) {
+    const auto& [difference, passed, a, b] = compared;
     if (!difference.same_size)
         return fmt::format("different sizes: {}x{} and {}x{}", a.width(), a.height(), b.width(), b.height());
     if (difference.equal) return "equal";
-    return fmt::format("{}: {}", compared.passed ? "within the limits" : "different",
-                       figures_text(difference));
+    return fmt::format("{}: {}", passed ? "within the limits" : "different", figures_text(difference));
 }
 
 /// Compares two pictures. Writes the picture of the difference to `diff`, if that is not empty.
@@ -76,20 +70,17 @@ ComparedPicture compare_picture(const CompareOptions& options, const std::string
     const Picture a = read_picture(path_a);
     const Picture b = read_picture(path_b);
     const Image* const mask_image = mask ? &*mask : nullptr;
-    ComparedPicture compared;
-    compared.difference = compare(a, b, mask_image);
-    compared.passed = compared.difference.within(options.limits);
-    compared.words = words_of(compared, a.image, b.image);
+    const Difference difference = compare(a, b, mask_image);
     if (!diff.empty()) write_png(diff, difference_image(a, b, mask_image), {}, {.force = options.force});
-    return compared;
+    return {difference, difference.within(options.limits), a.image.rect(), b.image.rect()};
 }
 
 ExitCode compare_pictures(const Console& console, const CompareOptions& options,
                           const std::optional<Image>& mask) {
     const ComparedPicture compared = compare_picture(options, options.a, options.b, mask, options.diff);
-    console.result(compared.words);
+    console.result(text_of(compared));
     if (!options.diff.empty()) console.info(fmt::format("difference picture: {}", options.diff));
-    nlohmann::json json = figures_json(compared.difference);
+    nlohmann::json json = json_of(compared.difference);
     json["schema"] = 1;
     json["passed"] = compared.passed;
     console.report(json);
@@ -213,10 +204,10 @@ ExitCode compare_folders(const Console& console, const CompareOptions& options,
             continue;
         }
         const ComparedPicture& compared = pair.compared;
-        if (!compared.difference.equal) console.result(fmt::format("{}: {}", pair.name, compared.words));
+        if (!compared.difference.equal) console.result(fmt::format("{}: {}", pair.name, text_of(compared)));
         failed += compared.passed ? 0 : 1;
         take_worst(compared.difference, worst);
-        file.update(figures_json(compared.difference));
+        file.update(json_of(compared.difference));
         file["passed"] = compared.passed;
         files.push_back(file);
     }
@@ -224,7 +215,7 @@ ExitCode compare_folders(const Console& console, const CompareOptions& options,
                                worst.equal   ? "all equal"
                                : failed == 0 ? "all within the limits"
                                              : fmt::format("{} failed", failed)));
-    nlohmann::json json = figures_json(worst);
+    nlohmann::json json = json_of(worst);
     json.update({{"schema", 1}, {"passed", failed == 0}, {"files", files}});
     console.report(json);
     return failed == 0 ? ExitCode::kOk : ExitCode::kMismatch;

@@ -3,6 +3,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
@@ -35,20 +36,21 @@ struct GoldenOptions {
 /// A page of more pictures is too large to open.
 constexpr int kMaxOnPage = 200;
 
-std::string line_of(const Checked& picture, const GoldenOptions& options) {
-    std::string line = picture.name + ": ";
-    if (picture.changed) {
-        line += options.def.dry_run ? "would be " : "";
-        line += picture.verdict == Verdict::kStale ? "removed: " : "written: ";
-    }
-    if (!picture.changed || picture.verdict != Verdict::kPassed) line += word_of(picture.verdict);
-    if (picture.verdict == Verdict::kDifferent && !picture.figures().empty())
-        line += ": " + picture.figures();
-    if (!picture.cause.empty()) line += (line.ends_with(' ') ? "" : "; ") + picture.cause;
-    if (picture.failed() && picture.verdict == Verdict::kMissing) line += "; --update adds it";
-    if (picture.failed() && picture.verdict == Verdict::kStale && !picture.has_no_record)
-        line += "; --update removes it";
-    return line;
+/// "a.png: would be written: different: max 3, mean 0.1, share 0.02; world.drag is 1 and was 0".
+std::string line_of(const Checked& picture, bool is_dry_run) {
+    std::vector<std::string> parts;
+    if (picture.verdict == Verdict::kDifferent && picture.difference)
+        parts.push_back("different: " + figures_text(picture));
+    else if (picture.verdict != Verdict::kPassed)
+        parts.emplace_back(word_of(picture.verdict));
+    if (const std::string cause = cause_text(picture).whole; !cause.empty()) parts.push_back(cause);
+    if (picture.failed() && picture.verdict == Verdict::kMissing) parts.emplace_back("--update adds it");
+    if (picture.failed() && picture.cause.kind == golden::Cause::Kind::kUnasked)
+        parts.emplace_back("--update removes it");
+    const bool is_stale = picture.verdict == Verdict::kStale;
+    const std::string change =
+        fmt::format("{}{}: ", is_dry_run ? "would be " : "", is_stale ? "removed" : "written");
+    return fmt::format("{}: {}{}", picture.name, picture.changed ? change : "", fmt::join(parts, "; "));
 }
 
 /// Prints failures, changes and totals.
@@ -56,17 +58,14 @@ void tell(const Console& console, const GoldenOptions& options, const golden::Su
     nlohmann::json pictures = nlohmann::json::array();
     for (const Checked& picture : result.pictures) {
         if (picture.verdict == Verdict::kInvalid)
-            console.error(picture.cause);
+            console.error(picture.cause.message);
         else if (picture.failed() || picture.changed)
-            console.result(line_of(picture, options));
+            console.result(line_of(picture, options.def.dry_run));
         pictures.push_back(golden::picture_json(picture));
     }
     for (const std::string& note : result.notes) console.warning(note);
     for (const std::string& detail : result.details) console.detail(detail);
-    const std::int64_t passed = result.count(Verdict::kPassed);
-    const std::int64_t failed = result.count(Verdict::kDifferent) + result.count(Verdict::kEmpty);
     const std::int64_t missing = result.count(Verdict::kMissing);
-    const std::int64_t stale = result.count(Verdict::kStale);
     const std::int64_t invalid = result.count(Verdict::kInvalid);
     console.result(result.totals());
     if (missing > 0 && !is_there(options.def.folder))
@@ -74,10 +73,10 @@ void tell(const Console& console, const GoldenOptions& options, const golden::Su
     else if (missing > 0)
         console.info("--update draws the missing pictures and keeps them");
     nlohmann::json json = {{"schema", 1},
-                           {"passed", passed},
-                           {"failed", failed},
+                           {"passed", result.count(Verdict::kPassed)},
+                           {"failed", result.count(Verdict::kDifferent) + result.count(Verdict::kEmpty)},
                            {"missing", missing},
-                           {"stale", stale},
+                           {"stale", result.count(Verdict::kStale)},
                            {"invalid", invalid},
                            {"changed", result.changed()},
                            {"notes", result.notes},
@@ -85,7 +84,7 @@ void tell(const Console& console, const GoldenOptions& options, const golden::Su
     if (invalid > 0) {
         const auto first = std::ranges::find(result.pictures, Verdict::kInvalid, &Checked::verdict);
         json["error"] = {{"code", static_cast<int>(ExitCode::kInvalidScene)},
-                         {"message", printable_lines(first->cause)}};
+                         {"message", printable_lines(first->cause.message)}};
     }
     console.report(std::move(json));
 }

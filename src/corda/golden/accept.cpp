@@ -8,7 +8,6 @@
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/golden/cases.hpp"
-#include "corda/golden/record.hpp"
 
 namespace corda::golden {
 namespace {
@@ -37,7 +36,8 @@ std::string hash_of(const Case& one, const Checked& picture) {
 
 /// A picture in a folder that write_new() has written.
 struct NewPicture {
-    Checked picture;
+    std::string name;
+    std::string path;
     std::string hash;            ///< of its bytes
     std::string scene_hash;      ///< see hash_of()
     std::string reference_hash;  ///< of the file that it is to replace; empty: there was none
@@ -50,17 +50,12 @@ std::vector<NewPicture> new_pictures_in(const std::string& folder) {
         const Json manifest = Json::parse(file_bytes(join(folder, kManifest)));
         for (const Json& json : manifest.at("pictures")) {
             const auto text = [&](const char* key) { return json.at(key).get<std::string>(); };
-            Checked picture{.scene = text("scene"), .name = text("name")};
-            if (fs::path(picture.name).filename() != picture.name || !picture.name.ends_with(kEnding) ||
-                picture.name.find('\0') != std::string::npos)
-                throw Error(ExitCode::kUsage, printable(picture.name) + " is no name of a picture");
-            picture.verdict =
-                text("result") == word_of(Verdict::kMissing) ? Verdict::kMissing : Verdict::kDifferent;
-            picture.difference.same_size = false;  // its figures are not read
-            picture.drawn_path = join(folder, picture.name);
-            picture.cause = printable(text("cause"));
-            picture.group = printable(text("group"));
-            pictures.push_back({picture, text("hash"), text("scene_hash"), text("reference_hash")});
+            const std::string name = text("name");
+            if (fs::path(name).filename() != name || !name.ends_with(kEnding) ||
+                name.find('\0') != std::string::npos)
+                throw Error(ExitCode::kUsage, printable(name) + " is no name of a picture");
+            pictures.push_back(
+                {name, join(folder, name), text("hash"), text("scene_hash"), text("reference_hash")});
         }
     } catch (const std::exception& error) {  // of Json, and kIo
         throw_usage("'{}' is no folder that corda golden --new has written: {}", folder,
@@ -69,40 +64,43 @@ std::vector<NewPicture> new_pictures_in(const std::string& folder) {
     return pictures;
 }
 
-/// Why a picture of these bytes does not belong to this scene and reference; empty if it does.
+/// Why a new picture of these bytes is not what a suite asks for; empty if it is.
 std::string problem_of(const NewPicture& one, const std::string& bytes, const Case& scene,
-                       const SuiteDef& def) {
-    const Checked& picture = one.picture;
+                       const Checked& picture, const SuiteDef& def) {
     if (hash_text(bytes) != one.hash) return "it was changed after corda golden --new wrote it";
     try {
-        static_cast<void>(read_png(picture.drawn_path));
+        static_cast<void>(read_png(one.path));
     } catch (const Error& error) {
         return fmt::format("it is no picture: {}", error.what());
     }
-    if (one.scene_hash != hash_of(scene, picture)) {
-        return "it is of another scene; " + scene_change(provenance_in(read_png_info(picture.drawn_path)),
-                                                         load_scene(scene.path, scene.settings),
-                                                         def.settings);
-    }
+    if (one.scene_hash != hash_of(scene, picture))
+        return "it is of another scene; " +
+               changes_text(scene_changes(provenance_in(read_png_info(one.path)),
+                                          load_scene(scene.path, scene.settings), def.settings));
     const std::string reference = hash_of(picture.reference);
     const bool is_known = reference == one.reference_hash || reference == one.hash;
     return is_known ? "" : fmt::format("'{}' has changed since, or is another one", picture.reference);
 }
 
+/// Why a new picture replaces its reference.
+Cause cause_of_change(const NewPicture& one, const Case& scene, const Checked& picture, const SuiteDef& def) {
+    const auto made = provenance_of_file(one.path);
+    const auto kept = provenance_of_file(picture.reference);
+    if (!made || !made->golden || !kept) return {};
+    return cause_of(*kept, *made->golden, load_scene(scene.path, scene.settings), def.settings);
+}
+
 /// Why no picture was accepted, although none was refused. `left_out`: those that the folders have.
-std::string nothing_text(const SuiteDef& def, std::vector<std::string> left_out) {
+std::string nothing_text(const SuiteDef& def, const std::vector<std::string>& left_out) {
     const std::string folders = fmt::format("{}", fmt::join(def.accepted, "', '"));
     if (left_out.empty())
         return fmt::format(
             "nothing to accept: '{}' has no picture, as after a corda golden --new without failures",
             folders);
-    constexpr std::size_t kMaxNamed = 10;
-    const bool has_more = left_out.size() > kMaxNamed;
-    if (has_more) left_out.resize(kMaxNamed);
     return fmt::format(
         "nothing to accept: '{}' has other pictures than those of --only or --shard; leave that out, or name "
-        "some of {}{}",
-        folders, fmt::join(left_out, ", "), has_more ? ", ..." : "");
+        "some of {}",
+        folders, listed(left_out, 10));
 }
 
 }  // namespace
@@ -123,8 +121,7 @@ void write_new(const SuiteDef& def, const std::vector<Case>& cases, const Files&
     std::vector<std::string> removed;
     if (is_there(join(def.new_folder, kManifest)))
         for (const NewPicture& old : new_pictures_in(def.new_folder))
-            if (!files.contains(old.picture.name) && hash_of(old.picture.drawn_path) == old.hash)
-                removed.push_back(old.picture.drawn_path);
+            if (!files.contains(old.name) && hash_of(old.path) == old.hash) removed.push_back(old.path);
     Json pictures = Json::array();
     for (const Case& one : cases) {
         for (const Checked& picture : one.pictures) {
@@ -146,52 +143,55 @@ void write_new(const SuiteDef& def, const std::vector<Case>& cases, const Files&
 
 SuiteResult accept(const SuiteDef& def) {
     SuiteResult result{.may_change = true, .dry_run = def.dry_run};
-    SuiteDef strict = def;
-    strict.update = true;  // an invalid scene is an error
-    std::vector<Checked> invalid;
-    std::vector<std::string> stale;
-    std::vector<std::string> passed_over;
-    std::vector<Case> cases = load_cases(strict, invalid, passed_over);
-    select(def, cases, stale, invalid);
-    report_skipped_files(passed_over, stale, result);
+    Suite suite = load_suite(def);
+    select(def, suite);
+    report_skipped_files(suite, result);
     std::map<std::string, std::pair<const Case*, const Checked*>> known;
-    for (const Case& one : cases)
+    for (const Case& one : suite.cases)
         for (const Checked& picture : one.pictures) known[picture.name] = {&one, &picture};
     Files files;
     std::map<std::string, std::string> hashes;
     std::vector<std::string> problems;
     std::vector<std::string> left_out;  // by --only or --shard
     for (const std::string& folder : def.accepted) {
-        for (NewPicture& one : new_pictures_in(folder)) {
-            Checked& picture = one.picture;
-            const auto [scene, asked] = known[picture.name];
-            if (!is_there(picture.drawn_path)) continue;
-            if (asked != nullptr && !asked->selected) {
-                left_out.push_back(picture.name);
+        for (const NewPicture& one : new_pictures_in(folder)) {
+            if (!is_there(one.path)) continue;
+            const auto [scene, asked] = known[one.name];
+            if (asked == nullptr) {
+                problems.push_back(one.path + ": no scene asks for it");
                 continue;
             }
-            picture.reference = join(def.folder, picture.name);
-            picture.time_s = asked == nullptr ? 0.0 : asked->time_s;
-            std::string bytes = file_bytes(picture.drawn_path);
-            std::string problem =
-                asked == nullptr ? "no scene asks for it" : problem_of(one, bytes, *scene, def);
-            const auto [other, is_first] = hashes.emplace(picture.name, one.hash);
+            if (!asked->selected) {
+                left_out.push_back(one.name);
+                continue;
+            }
+            Checked picture = *asked;
+            picture.reference = join(def.folder, one.name);
+            picture.drawn_path = one.path;
+            std::string bytes = file_bytes(one.path);
+            std::string problem = problem_of(one, bytes, *scene, picture, def);
+            const auto [other, is_first] = hashes.emplace(one.name, one.hash);
             if (!is_first && other->second != one.hash)
                 problem = "another folder has another picture of this name";
-            if (!problem.empty()) problems.push_back(picture.drawn_path + ": " + problem);
-            if (!is_first) continue;
+            if (!problem.empty()) problems.push_back(one.path + ": " + problem);
+            if (!problem.empty() || !is_first) continue;
             picture.changed = hash_of(picture.reference) != one.hash;
-            if (!picture.changed) picture.verdict = Verdict::kPassed;
-            if (picture.changed) files[picture.name] = std::move(bytes);
-            result.pictures.push_back(picture);
+            if (picture.changed) {
+                const bool is_missing = one.reference_hash.empty();
+                picture.verdict = is_missing ? Verdict::kMissing : Verdict::kDifferent;
+                picture.cause = is_missing ? Cause{.kind = Cause::Kind::kNoReference}
+                                           : cause_of_change(one, *scene, picture, def);
+                files[one.name] = std::move(bytes);
+            }
+            result.pictures.push_back(std::move(picture));
         }
     }
-    if (result.pictures.empty() && problems.empty()) result.notes.push_back(nothing_text(def, left_out));
     if (!problems.empty())
         throw_usage(
             "nothing is accepted:\n  {}\nrun corda golden --new again, give the same --set, or remove these "
             "pictures from their folder",
             fmt::join(problems, "\n  "));
+    if (result.pictures.empty()) result.notes.push_back(nothing_text(def, left_out));
     if (!def.dry_run) publish(def.folder, files, {});
     return result;
 }

@@ -3,6 +3,7 @@
 #include <fnmatch.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -14,7 +15,6 @@
 #include "corda/core/file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/timeline.hpp"
-#include "corda/golden/record.hpp"
 #include "corda/media/format/file_kind.hpp"
 
 namespace corda::golden {
@@ -86,7 +86,8 @@ Case make_case(const std::string& path, const SuiteDef& def, std::set<std::strin
 }
 
 /// True for a key `schema` of the root whose value is a number. Another value belongs to another program, for
-/// instance the address of a JSON Schema.
+/// instance the address of a JSON Schema. Files of a folder are judged by this before they are read as
+/// scenes; a file that is named is always read.
 bool has_schema(std::string_view text) {
     for (std::size_t at = 0; at < text.size(); at = std::min(text.find('\n', at), text.size() - 1) + 1) {
         const std::size_t word = text.find_first_not_of(" \t\"'", at);
@@ -98,12 +99,6 @@ bool has_schema(std::string_view text) {
         return value != std::string_view::npos && text[value] >= '0' && text[value] <= '9';
     }
     return false;
-}
-
-/// True for a TOML file of another program. Files of a folder are judged by this before they are read as
-/// scenes; a file that is named is always read.
-bool is_foreign(const std::string& path) {
-    return !has_schema(file_bytes(path));
 }
 
 /// SCENE of a name SCENE_tSSSS_FFFFFF.png, as name_of() makes it; empty for other names.
@@ -120,16 +115,91 @@ std::string scene_in_name(const std::string& name) {
     return name.substr(0, begin);
 }
 
+/// The scene of a file; none if it is of another program. Throws corda::Error.
+std::optional<Case> case_of(const std::string& file, bool is_named, const SuiteDef& def,
+                            std::set<std::string>& names) {
+    std::error_code none;  // the reader reports the error
+    if (fs::status(file, none).type() == fs::file_type::not_found && fs::is_symlink(file, none))
+        throw_error(ExitCode::kInvalidScene, "{}: a link to nothing; restore that file, or remove the link",
+                    file);
+    if (!is_named && !has_schema(file_bytes(file))) return std::nullopt;
+    return make_case(file, def, names);
+}
+
+/// References that `corda golden` made and no scene asks for; if scenes are named one by one, of these alone.
+/// Made by it are those that say so, and those without a record whose names are SCENE_tSSSS_FFFFFF.png.
+std::vector<std::string> stale_ones(const SuiteDef& def, const Suite& suite) {
+    std::set<std::string> used;
+    std::set<std::string> scenes;
+    for (const Case& one : suite.cases) {
+        scenes.insert(printable(one.scene.name));
+        for (const Checked& picture : one.pictures)
+            for (const std::string& path : variants_of(suite.references, picture.name)) used.insert(path);
+    }
+    std::error_code none;
+    const bool has_folder =
+        std::ranges::any_of(def.paths, [&](const std::string& path) { return fs::is_directory(path, none); });
+    std::vector<std::string> stale;
+    for (const std::string& path : suite.references) {
+        if (used.contains(path)) continue;
+        const auto made = provenance_of_file(path);
+        const std::string scene =
+            made && made->golden ? made->name : printable(scene_in_name(fs::path(path).filename().string()));
+        if (!scene.empty() && (has_folder || scenes.contains(scene))) stale.push_back(path);
+    }
+    return stale;
+}
+
 }  // namespace
 
-void select(const SuiteDef& def, std::vector<Case>& cases, std::vector<std::string>& stale,
-            std::vector<Checked>& invalid) {
+Suite load_suite(const SuiteDef& def) {
+    Suite suite;
+    std::set<std::string> names;
+    std::error_code none;  // the reader reports the error
+    const auto add = [&](const std::string& file, bool is_named) {
+        std::optional<Case> made = case_of(file, is_named, def, names);
+        if (!made)
+            suite.passed_over.push_back(file);
+        else if (made->scene.golden)
+            suite.cases.push_back(std::move(*made));
+        else if (is_named)
+            throw_usage("'{}' has no table [golden]; add one, for instance [golden] with at = [0.0, 1.0]",
+                        file);
+    };
+    for (const std::string& path : def.paths) {
+        const bool is_folder = fs::is_directory(path, none);
+        for (const std::string& file :
+             is_folder ? files_in<fs::recursive_directory_iterator>(path, ".toml") : std::vector{path}) {
+            try {
+                add(file, !is_folder);
+            } catch (const Error& error) {
+                const bool changes_references = def.update || !def.accepted.empty();
+                if (error.code() != ExitCode::kInvalidScene || changes_references) throw;
+                suite.invalid.push_back(
+                    {.scene = fs::path(file).stem().string(),
+                     .name = file,
+                     .verdict = Verdict::kInvalid,
+                     .cause = {.kind = Cause::Kind::kInvalidScene, .message = error.what()}});
+            }
+        }
+    }
+    if (suite.cases.empty() && suite.invalid.empty())
+        throw_usage(
+            "no scene in '{}' has a table [golden]; add one, for instance [golden] with at = [0.0, 1.0]",
+            def.paths.front());
+    if (!def.accepted.empty()) return suite;
+    suite.references = references_in(def.folder);
+    if (suite.invalid.empty()) suite.stale = stale_ones(def, suite);
+    return suite;
+}
+
+void select(const SuiteDef& def, Suite& suite) {
     std::vector<bool> is_used(def.only.size());
     std::set<std::string> known;
     const auto names_of = [](const std::string& file, const std::string& scene) {
         return std::array{file, fs::path(file).stem().string(), scene};
     };
-    for (const Case& one : cases)
+    for (const Case& one : suite.cases)
         for (const Checked& picture : one.pictures)
             for (const std::string& name : names_of(picture.name, picture.scene)) known.insert(name);
     const auto is_named = [&](const std::string& file, const std::string& scene) {
@@ -145,17 +215,17 @@ void select(const SuiteDef& def, std::vector<Case>& cases, std::vector<std::stri
     const auto is_in_shard = [&](std::size_t i) {
         return static_cast<std::int64_t>(i) % def.shard.count == def.shard.index;
     };
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-        for (Checked& picture : cases[i].pictures)
+    for (std::size_t i = 0; i < suite.cases.size(); ++i) {
+        for (Checked& picture : suite.cases[i].pictures)
             picture.selected = is_named(picture.name, picture.scene) && is_in_shard(i) && !def.stale_only;
     }
     std::size_t count = 0;
-    std::erase_if(stale, [&](const std::string& path) {
+    std::erase_if(suite.stale, [&](const std::string& path) {
         const std::string name = fs::path(path).filename().string();
         return !is_named(name, scene_in_name(name)) || !is_in_shard(count++);
     });
     count = 0;
-    std::erase_if(invalid, [&](const Checked& scene) {
+    std::erase_if(suite.invalid, [&](const Checked& scene) {
         return !is_named(scene.name, scene.scene) || !is_in_shard(count++);
     });
     for (std::size_t i = 0; i < def.only.size(); ++i) {
@@ -166,77 +236,9 @@ void select(const SuiteDef& def, std::vector<Case>& cases, std::vector<std::stri
     }
 }
 
-Provenance provenance_of_file(const std::string& path) {
-    try {
-        return provenance_in(read_png_info(path));
-    } catch (const Error&) {
-        return {};
-    }
-}
-
-bool is_no_png(const std::string& path) {
-    std::error_code none;
-    return fs::is_regular_file(path, none) && !media::is_png(path);
-}
-
-bool lacks_record(const std::string& path) {
-    try {
-        return !provenance_in(read_png_info(path)).golden;
-    } catch (const Error&) {
-        return false;
-    }
-}
-
-std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid,
-                             std::vector<std::string>& passed_over) {
-    std::vector<Case> cases;
-    std::set<std::string> names;
-    std::error_code none;  // the reader reports the error
-    const auto load = [&](const std::string& file, bool is_folder) -> std::optional<Case> {
-        try {
-            if (fs::status(file, none).type() == fs::file_type::not_found && fs::is_symlink(file, none))
-                throw_error(ExitCode::kInvalidScene,
-                            "{}: a link to nothing; restore that file, or remove the link", file);
-            if (is_folder && is_foreign(file)) {
-                passed_over.push_back(file);
-                return std::nullopt;
-            }
-            return make_case(file, def, names);
-        } catch (const Error& error) {
-            if (error.code() != ExitCode::kInvalidScene || def.update) throw;
-            invalid.push_back({.scene = fs::path(file).stem().string(),
-                               .name = file,
-                               .verdict = Verdict::kInvalid,
-                               .cause = error.what(),
-                               .group = "invalid scene"});
-            return std::nullopt;
-        }
-    };
-    for (const std::string& path : def.paths) {
-        const bool is_folder = fs::is_directory(path, none);
-        const std::vector<std::string> files =
-            is_folder ? files_in<fs::recursive_directory_iterator>(path, ".toml") : std::vector{path};
-        for (const std::string& file : files) {
-            std::optional<Case> made = load(file, is_folder);
-            if (!made) continue;
-            if (made->scene.golden)
-                cases.push_back(std::move(*made));
-            else if (!is_folder)
-                throw_usage("'{}' has no table [golden]; add one, for instance [golden] with at = [0.0, 1.0]",
-                            file);
-        }
-    }
-    if (cases.empty() && invalid.empty())
-        throw_usage(
-            "no scene in '{}' has a table [golden]; add one, for instance [golden] with at = [0.0, 1.0]",
-            def.paths.front());
-    return cases;
-}
-
-void report_skipped_files(const std::vector<std::string>& files, const std::vector<std::string>& stale,
-                          SuiteResult& result) {
-    for (const std::string& file : files) {
-        const bool has_stale = std::ranges::any_of(stale, [&](const std::string& path) {
+void report_skipped_files(const Suite& suite, SuiteResult& result) {
+    for (const std::string& file : suite.passed_over) {
+        const bool has_stale = std::ranges::any_of(suite.stale, [&](const std::string& path) {
             return scene_in_name(fs::path(path).filename().string()) == fs::path(file).stem();
         });
         if (has_stale)
@@ -245,6 +247,32 @@ void report_skipped_files(const std::vector<std::string>& files, const std::vect
         else
             result.details.push_back(file + ": passed over: no scene, as it has no schema = 1");
     }
+}
+
+std::optional<Provenance> provenance_of_file(const std::string& path) {
+    try {
+        return provenance_in(read_png_info(path));
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+}
+
+std::string listed(std::vector<std::string> names, std::size_t most) {
+    if (names.size() > most) {
+        names.resize(most);
+        names.emplace_back("...");
+    }
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+bool is_no_png(const std::string& path) {
+    std::error_code none;
+    return fs::is_regular_file(path, none) && !media::is_png(path);
+}
+
+bool lacks_record(const std::string& path) {
+    const auto made = provenance_of_file(path);
+    return made && !made->golden;
 }
 
 std::vector<std::string> references_in(const std::string& folder) {
@@ -268,29 +296,6 @@ bool has_one_color(const Image& image) {
     for (std::size_t i = 4; i < image.size_bytes(); i += 4)
         if (std::memcmp(image.data(), image.data() + i, 4) != 0) return false;
     return true;
-}
-
-std::vector<std::string> stale_ones(const SuiteDef& def, const std::vector<Case>& cases,
-                                    const std::vector<std::string>& references) {
-    std::set<std::string> used;
-    std::set<std::string> scenes;
-    for (const Case& one : cases) {
-        scenes.insert(printable(one.scene.name));
-        for (const Checked& picture : one.pictures)
-            for (const std::string& path : variants_of(references, picture.name)) used.insert(path);
-    }
-    std::error_code none;
-    const bool has_folder =
-        std::ranges::any_of(def.paths, [&](const std::string& path) { return fs::is_directory(path, none); });
-    std::vector<std::string> stale;
-    for (const std::string& path : references) {
-        if (used.contains(path)) continue;
-        const Provenance made = provenance_of_file(path);
-        const std::string scene =
-            made.golden ? made.name : printable(scene_in_name(fs::path(path).filename().string()));
-        if (!scene.empty() && (has_folder || scenes.contains(scene))) stale.push_back(path);
-    }
-    return stale;
 }
 
 }  // namespace corda::golden

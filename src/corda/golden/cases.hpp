@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "corda/golden/suite.hpp"
 #include "corda/film/provenance.hpp"
+#include "corda/golden/suite.hpp"
 
 namespace corda::golden {
 
@@ -21,19 +21,25 @@ struct Case {
     std::optional<Image> mask;
 };
 
-/// The scenes of a suite. Invalid ones go to `invalid`, except those of an update. TOML files of folders that
-/// are no scenes go to `passed_over`. Throws corda::Error as run().
-[[nodiscard]] std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid,
-                                           std::vector<std::string>& passed_over);
+/// The files of a suite.
+struct Suite {
+    std::vector<Case> cases;
+    std::vector<Checked> invalid;          ///< scenes that cannot be read
+    std::vector<std::string> passed_over;  ///< TOML files of folders that are no scenes
+    std::vector<std::string> references;   ///< all pictures of the folder, sorted
+    std::vector<std::string> stale;        ///< those that no scene asks for; none beside invalid scenes
+};
+
+/// Finds all files of a suite, for accept() without its references. Throws corda::Error as run(); for an
+/// invalid scene, too, if references are to be changed.
+[[nodiscard]] Suite load_suite(const SuiteDef& def);
+
+/// Leaves the pictures out that the suite does not ask for: those of cases stay, unselected. Throws
+/// corda::Error (kUsage) for a name of SuiteDef::only that is none.
+void select(const SuiteDef& def, Suite& suite);
 
 /// Reports the files that were passed over: as a note if pictures are stale for it, else as a detail.
-void report_skipped_files(const std::vector<std::string>& files, const std::vector<std::string>& stale,
-                          SuiteResult& result);
-
-/// Leaves the pictures out that the suite does not ask for: those of `cases` stay, unselected. Throws
-/// corda::Error (kUsage) for a name of SuiteDef::only that is none.
-void select(const SuiteDef& def, std::vector<Case>& cases, std::vector<std::string>& stale,
-            std::vector<Checked>& invalid);
+void report_skipped_files(const Suite& suite, SuiteResult& result);
 
 /// The bytes of pictures by their names.
 using Files = std::map<std::string, std::string>;
@@ -47,8 +53,8 @@ void publish(const std::string& folder, const Files& files, const std::vector<st
 /// kIo; kUsage for a golden.json of another kind.
 void write_new(const SuiteDef& def, const std::vector<Case>& cases, const Files& files);
 
-/// The provenance of a golden picture; empty if it cannot be read.
-[[nodiscard]] Provenance provenance_of_file(const std::string& path);
+/// The provenance of a picture; none if it cannot be read.
+[[nodiscard]] std::optional<Provenance> provenance_of_file(const std::string& path);
 
 /// The pictures of the folder of references, sorted; none if there is no folder. Throws corda::Error (kIo).
 [[nodiscard]] std::vector<std::string> references_in(const std::string& folder);
@@ -60,15 +66,13 @@ void write_new(const SuiteDef& def, const std::vector<Case>& cases, const Files&
 /// Whether a picture shows nothing but its ground.
 [[nodiscard]] bool has_one_color(const Image& image);
 
+/// The first `most` names, and "..." for others.
+[[nodiscard]] std::string listed(std::vector<std::string> names, std::size_t most);
+
 /// True if a file is there that does not begin as a PNG does, such as a pointer of Git LFS or a page of HTML.
 [[nodiscard]] bool is_no_png(const std::string& path);
 
 /// True if a readable picture does not tell how `corda golden` made it: a tool may have removed its texts.
 [[nodiscard]] bool lacks_record(const std::string& path);
-
-/// References that `corda golden` made and no scene asks for; if scenes are named one by one, of these alone.
-/// Made by it are those that say so, and those without a record whose names are SCENE_tSSSS_FFFFFF.png.
-[[nodiscard]] std::vector<std::string> stale_ones(const SuiteDef& def, const std::vector<Case>& cases,
-                                                  const std::vector<std::string>& references);
 
 }  // namespace corda::golden

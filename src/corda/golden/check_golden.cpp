@@ -32,13 +32,6 @@ fs::path folder_of(const GoldenOptions& options) {
     return folder.empty() ? "." : folder;
 }
 
-std::string text_of(const Difference& difference, const Image& golden, const Image& drawn) {
-    if (!difference.same_size)
-        return fmt::format("{}x{} pixels, the golden picture {}x{}", drawn.width(), drawn.height(),
-                           golden.width(), golden.height());
-    return figures_text(difference);
-}
-
 /// Writes the pictures that show a failure; says where.
 std::string keep_artifacts(const std::string& name, const fs::path& golden_folder, const Image& drawn,
                            const std::optional<Picture>& golden) {
@@ -62,31 +55,20 @@ std::string keep_artifacts(const std::string& name, const fs::path& golden_folde
     return fmt::format("; see {} and {}", drawn_path, difference_path);
 }
 
-/// Message for a golden picture that cannot be read; empty if it can.
-std::string read_golden(const std::string& path, Picture& golden) {
-    try {
-        golden = read_picture(path);
-        return "";
-    } catch (const Error& error) {
-        if (error.code() != ExitCode::kIo) throw;
-        return error.what();
-    }
+GoldenOutcome failure(const std::string& message) {
+    return {.matches = false, .written = false, .message = message};
 }
 
-GoldenOutcome update(const fs::path& path, const Image& drawn, const std::string& why) {
-    if (golden::provenance_of_file(path.string()).golden)
-        return {.matches = false,
-                .written = false,
-                .message = why + "; update it by corda golden --update, which made it"};
-    if (golden::is_no_png(path.string()))
-        return {.matches = false,
-                .written = false,
-                .message = why + "; the file is no PNG and stays; remove it to have the picture written"};
-    make_folder(path.parent_path().string());
+GoldenOutcome update(const std::string& path, const Image& drawn, const std::string& why) {
+    if (const auto made = golden::provenance_of_file(path); made && made->golden)
+        return failure(why + "; update it by corda golden --update, which made it");
+    if (golden::is_no_png(path))
+        return failure(why + "; the file is no PNG and stays; remove it to have the picture written");
+    make_folder(fs::path(path).parent_path().string());
     PngInfo info;
     info.text = {{"Software", fmt::format("corda {}", version())}};
-    write_png(path.string(), drawn, info, {.force = true});
-    return {.matches = true, .written = true, .message = fmt::format("{}: written: {}", path.string(), why)};
+    write_png(path, drawn, info, {.force = true});
+    return {.matches = true, .written = true, .message = fmt::format("{}: written: {}", path, why)};
 }
 
 }  // namespace
@@ -98,28 +80,32 @@ GoldenOutcome check_golden(const Image& drawn, const std::string& name, const Go
     const fs::path folder = path.parent_path().empty() ? "." : path.parent_path();
     const std::string file = path.filename().string();
     if (golden::has_one_color(drawn))
-        return {.matches = false,
-                .written = false,
-                .message = "the picture has one colour alone: nothing is in view" +
-                           keep_artifacts(name, folder, drawn, std::nullopt)};
+        return failure("the picture has one colour alone: nothing is in view" +
+                       keep_artifacts(name, folder, drawn, std::nullopt));
     std::string why = fmt::format("there is no golden picture '{}'", path.string());
     std::optional<Picture> golden;
-    const Picture shown{.image = drawn};
     for (const std::string& variant : golden::variants_of(golden::references_in(folder.string()), file)) {
         Picture one;
-        if (const std::string damage = read_golden(variant, one); !damage.empty()) {
-            if (!golden) why = damage;
+        try {
+            one = read_picture(variant);
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::kIo) throw;
+            if (!golden) why = error.what();
             continue;
         }
-        const Difference difference = compare(one, shown);
+        const Difference difference = compare(one, {.image = drawn});
         if (difference.within(options.limits)) return {.matches = true, .written = false, .message = {}};
         if (golden && fs::path(variant).filename() != file) continue;
-        why = fmt::format("differs from '{}': {}", variant, text_of(difference, one.image, drawn));
+        why = fmt::format("differs from '{}': {}", variant,
+                          difference.same_size
+                              ? figures_text(difference)
+                              : fmt::format("{}x{} pixels, the golden picture {}x{}", drawn.width(),
+                                            drawn.height(), one.image.width(), one.image.height()));
         golden = std::move(one);
     }
-    if (is_update()) return update(path, drawn, why);
+    if (is_update()) return update(path.string(), drawn, why);
     if (!golden) why += "; CORDA_UPDATE_GOLDENS=1 writes it";
-    return {.matches = false, .written = false, .message = why + keep_artifacts(name, folder, drawn, golden)};
+    return failure(why + keep_artifacts(name, folder, drawn, golden));
 }
 
 }  // namespace corda::testing

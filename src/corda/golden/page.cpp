@@ -101,10 +101,10 @@ std::optional<Image> reference_of(const Checked& picture) {
 }
 
 std::string case_html(const Checked& picture) {
-    std::string html = fmt::format("<section id=\"{0}\">\n<h2>{0}</h2>\n<p class=\"cause\">{1}</p>\n",
-                                   markup_text(picture.name), markup_text(picture.why()));
-    if (const std::string figures = picture.figures(); !figures.empty())
-        html += fmt::format("<p class=\"figures\">{}</p>\n", figures);
+    std::string html =
+        fmt::format("<section id=\"{0}\">\n<h2>{0}</h2>\n<p class=\"cause\">{1}</p>\n",
+                    markup_text(picture.name), markup_text(cause_text(picture).whole_or_group()));
+    if (picture.difference) html += fmt::format("<p class=\"figures\">{}</p>\n", figures_text(picture));
     const bool is_shown = picture.drawn || picture.verdict == Verdict::kStale;
     const auto reference = is_shown ? reference_of(picture) : std::nullopt;
     if (!is_shown) html += "<p>Too many pictures failed to show all of them; check this scene alone.</p>\n";

@@ -7,16 +7,13 @@
 
 #include "corda/core/text.hpp"
 #include "corda/film/plan_text.hpp"
-#include "corda/scene/write_scene.hpp"
 
 namespace corda::golden {
 
 GoldenRecord record_of(Film& film) {
-    GoldenRecord record{.renderer = film.gl().renderer, .chosen = values_of(frozen_scene(film))};
-    for (const auto& [key, value] : values_of(film.scene())) {
-        const auto same = record.chosen.find(key);
-        if (same != record.chosen.end() && same->second == value) record.chosen.erase(same);
-    }
+    GoldenRecord record{.renderer = film.gl().renderer};
+    for (const KeyChange& choice : differences(values_of(frozen_scene(film)), values_of(film.scene())))
+        if (choice.now) record.chosen.emplace(choice.key, *choice.now);
     return record;
 }
 
@@ -40,42 +37,41 @@ std::map<std::string, std::string> pixel_values(const Scene& scene) {
     return all;
 }
 
-std::string scene_change(const Provenance& kept, const Scene& now, const std::vector<Setting>& settings) {
-    std::vector<std::string> changes;
+std::vector<KeyChange> scene_changes(const Provenance& kept, const Scene& now,
+                                     const std::vector<Setting>& settings) {
+    std::vector<KeyChange> changes;
     try {
         changes = differences(pixel_values(now), pixel_values(scene_of(kept, now.source)));
     } catch (const Error&) {  // of another Corda, whose scenes this one does not read
-        return "";
+        return {};
     }
-    for (std::string& change : changes) {
-        const bool is_set = std::ranges::any_of(settings, [&](const Setting& setting) {
-            const std::string key = setting.substr(0, std::min(setting.find('='), setting.find(' ')));
-            return change.starts_with(key) &&
-                   std::string_view(" .[").find(change[key.size()]) != std::string_view::npos;
+    for (KeyChange& change : changes)
+        change.is_set = std::ranges::any_of(settings, [&](const Setting& setting) {
+            const std::string key = setting.substr(0, setting.find_first_of("= "));
+            return change.key == key || change.key.starts_with(key + '.') ||
+                   change.key.starts_with(key + '[');
         });
-        if (is_set) change += " (by --set)";
-    }
-    return differences_text(changes);
+    return changes;
 }
 
 Cause cause_of(const Provenance& kept, const GoldenRecord& made, const Scene& now,
                const std::vector<Setting>& settings) {
-    const auto alone = [](const std::string& text) { return Cause{text, text}; };
-    if (!kept.golden) return alone("pixels differ; the reference does not say how it was made");
-    const std::string change = scene_change(kept, now, settings);
+    using Kind = Cause::Kind;
+    if (!kept.golden) return {.kind = Kind::kUnrecorded};
+    Cause cause{.kind = Kind::kScene, .changed = scene_changes(kept, now, settings)};
     // Pictures of earlier versions do not tell what was chosen.
-    const std::string chosen =
-        kept.golden->chosen.empty() ? "" : differences_text(differences(made.chosen, kept.golden->chosen));
-    if (!change.empty()) return {(chosen.empty() ? "" : "another choice: " + chosen + "; ") + change, change};
-    if (!chosen.empty())
-        return {"same scene, another choice: " + chosen, "another solver or camera is chosen"};
+    if (!kept.golden->chosen.empty()) cause.chosen = differences(made.chosen, kept.golden->chosen);
+    // A key that the scene now gives, or gave before, is no consequence.
+    std::erase_if(cause.chosen, [&](const KeyChange& choice) {
+        return std::ranges::find(cause.changed, choice.key, &KeyChange::key) != cause.changed.end();
+    });
+    if (!cause.changed.empty()) return cause;
+    if (!cause.chosen.empty()) return {.kind = Kind::kChoice, .chosen = cause.chosen};
     if (kept.corda != version())
-        return alone(
-            fmt::format("same scene, drawn by another version of Corda: {}, now {}", kept.corda, version()));
+        return {.kind = Kind::kVersion, .stored = kept.corda, .now = std::string(version())};
     if (kept.golden->renderer != made.renderer)
-        return alone(fmt::format("same scene, drawn by another OpenGL: {}, now {}", kept.golden->renderer,
-                                 made.renderer));
-    return alone("same scene, version and OpenGL, but pixels differ");
+        return {.kind = Kind::kRenderer, .stored = kept.golden->renderer, .now = made.renderer};
+    return {.kind = Kind::kPixels};
 }
 
 }  // namespace corda::golden

@@ -6,6 +6,7 @@
 
 #include "corda/film/film.hpp"
 #include "corda/film/provenance.hpp"
+#include "corda/scene/write_scene.hpp"
 
 namespace corda::golden {
 
@@ -18,19 +19,41 @@ namespace corda::golden {
 /// The values of the keys that may change pixels; see values_of().
 [[nodiscard]] std::map<std::string, std::string> pixel_values(const Scene& scene);
 
-/// The changes of a scene since its picture was kept, of the keys that may change pixels: "world.drag is 0.2
-/// and was 0, rope[0].hang.links is 31 and was 30". Those that `settings` make say so. Empty if there are
-/// none, or the kept picture does not carry a scene that can be read.
-[[nodiscard]] std::string scene_change(const Provenance& kept, const Scene& now,
-                                       const std::vector<Setting>& settings = {});
+/// The changes of a scene since its picture was kept, of the keys that may change pixels. Those that
+/// `settings` make say so. Empty if there are none, or the kept picture does not carry a scene that can be
+/// read.
+[[nodiscard]] std::vector<KeyChange> scene_changes(const Provenance& kept, const Scene& now,
+                                                   const std::vector<Setting>& settings = {});
 
-/// Why pictures differ.
+/// Why a picture failed, or why an update writes it. cause_text() has the words, in this order.
 struct Cause {
-    std::string text;
-    std::string group;  ///< the same for all pictures that differ for this reason, whatever the figures
+    enum class Kind {
+        kNone,  ///< it passed, or nothing is known beyond the verdict
+        kInvalidScene,
+        kNoReference,
+        kReferenceIsNoPng,
+        kReferenceIsDamaged,
+        kSize,
+        kUnrecorded,  ///< pixels differ, and the reference does not say how it was made
+        kScene,
+        kChoice,  ///< of solver or camera, for the same scene
+        kVersion,
+        kRenderer,
+        kPixels,      ///< all of these are the same
+        kLostRecord,  ///< pixels are the same, and the reference does not say how it was made
+        kUnasked,     ///< by any scene, of a reference
+        kUnaskedNoPng,
+        kUnaskedUnrecorded,
+    };
+    Kind kind = Kind::kNone;
+    std::vector<KeyChange> changed = {};  ///< keys of the scene
+    std::vector<KeyChange> chosen = {};   ///< what follows: keys that the scene leaves open
+    std::string stored = {};              ///< size, version or renderer of the reference
+    std::string now = {};                 ///< ... and of the new picture
+    std::string message = {};             ///< of the reader of a scene or reference
 };
 
-/// The most likely cause of the difference from a kept picture, in words. `settings`: see scene_change().
+/// The most likely cause of the difference from a kept picture. `settings`: see scene_changes().
 [[nodiscard]] Cause cause_of(const Provenance& kept, const GoldenRecord& made, const Scene& now,
                              const std::vector<Setting>& settings = {});
 

@@ -13,25 +13,58 @@
 namespace corda::golden {
 namespace {
 
+namespace fs = std::filesystem;
+
+/// What is said of a cause.
+struct Words {
+    const char* group;
+    const char* own;
+    bool is_alone = false;  ///< the own words say it all, and do not follow those of the group
+};
+
+/// By Cause::Kind.
+constexpr std::array kWords{
+    Words{"", ""},
+    Words{"invalid scene", "{message}", true},
+    Words{"there is no reference", "", true},
+    Words{"is no PNG, and --update --force replaces it",
+          "the kept picture is no PNG, and --update --force replaces it ({message})", true},
+    Words{"is damaged, and --update replaces it",
+          "the kept picture is damaged, and --update replaces it ({message})", true},
+    Words{"{stored} pixels, now {now}", ""},
+    Words{"pixels differ; the reference does not say how it was made", ""},
+    Words{"{changed}", "{chosen}"},
+    Words{"another solver or camera is chosen", "same scene, {chosen}", true},
+    Words{"same scene, drawn by another version of Corda: {stored}, now {now}", ""},
+    Words{"same scene, drawn by another OpenGL: {stored}, now {now}", ""},
+    Words{"same scene, version and OpenGL, but pixels differ", ""},
+    Words{"", "the same pixels, without a record of how they were made", true},
+    Words{"no scene asks for it", ""},
+    Words{"no scene asks for it", "it is no PNG, and --update --force removes it"},
+    Words{"no scene asks for it", "it has no record of how it was made, and --update --force removes it"},
+};
+
+/// Joins what is not empty.
+std::string joined(const std::string& first, const std::string& second) {
+    return first + (first.empty() || second.empty() ? "" : "; ") + second;
+}
+
 std::string case_xml(const Checked& picture) {
     std::string xml = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\">\n",
                                   markup_text(picture.scene), markup_text(picture.name), picture.seconds);
-    const Difference& difference = picture.difference;
-    if (!picture.figures().empty()) {
+    if (picture.difference) {
         const auto property = [](const char* name, double value) {
             return fmt::format("        <property name=\"{}\" value=\"{:.6g}\"/>\n", name, value);
         };
+        const Difference& difference = *picture.difference;
         xml += "      <properties>\n" + property("max", difference.max) + property("mean", difference.mean) +
-               property("share", difference.share);
-        xml += "      </properties>\n";
+               property("share", difference.share) + "      </properties>\n";
     }
-    if (picture.failed()) {
-        const std::string figures = picture.figures();
+    if (picture.failed())
         xml +=
             fmt::format("      <{} type=\"{}\" message=\"{}\"/>\n",
                         picture.verdict == Verdict::kInvalid ? "error" : "failure", word_of(picture.verdict),
-                        markup_text((figures.empty() ? "" : figures + "; ") + picture.why()));
-    }
+                        markup_text(joined(figures_text(picture), cause_text(picture).whole_or_group())));
     return xml + "    </testcase>\n";
 }
 
@@ -66,9 +99,25 @@ const char* word_of(Verdict verdict) {
     return kWords.at(static_cast<std::size_t>(verdict));
 }
 
-std::string Checked::figures() const {
-    const bool has_figures = verdict != Verdict::kStale && !reference.empty() && difference.same_size;
-    return has_figures ? figures_text(difference) : "";
+std::string figures_text(const Checked& picture) {
+    return picture.difference ? corda::figures_text(*picture.difference) : "";
+}
+
+CauseText cause_text(const Checked& picture) {
+    const Cause& cause = picture.cause;
+    const auto filled_in = [&](const char* text) {
+        return fmt::format(
+            fmt::runtime(text), fmt::arg("message", cause.message), fmt::arg("stored", cause.stored),
+            fmt::arg("now", cause.now), fmt::arg("changed", changes_text(cause.changed)),
+            fmt::arg("chosen", cause.chosen.empty() ? "" : "another choice: " + changes_text(cause.chosen)));
+    };
+    const Words& words = kWords.at(static_cast<std::size_t>(cause.kind));
+    CauseText text{.group = filled_in(words.group), .own = filled_in(words.own)};
+    text.whole = words.is_alone ? text.own : joined(text.group, text.own);
+    if (picture.verdict != Verdict::kEmpty) return text;
+    constexpr const char* kNothing = "nothing is in view";
+    if (text.group.empty()) return {.group = kNothing, .own = "", .whole = kNothing};
+    return {text.group, joined(kNothing, text.own), joined(kNothing, text.whole)};
 }
 
 std::int64_t SuiteResult::count(Verdict verdict) const {
@@ -91,28 +140,29 @@ std::string SuiteResult::totals() const {
     return text;
 }
 
-nlohmann::json max_json(const Difference& difference) {
-    const auto whole = static_cast<int>(difference.max);
-    return difference.max == whole ? nlohmann::json(whole) : nlohmann::json(difference.max);
+nlohmann::json figures_json(const std::optional<Difference>& difference) {
+    if (!difference || !difference->same_size)
+        return {{"max", nullptr}, {"mean", nullptr}, {"share", nullptr}};
+    const auto whole = static_cast<int>(difference->max);  // but of pictures with 16 bits
+    return {{"max", difference->max == whole ? nlohmann::json(whole) : nlohmann::json(difference->max)},
+            {"mean", difference->mean},
+            {"share", difference->share}};
 }
 
 nlohmann::json picture_json(const Checked& picture) {
-    const bool has_figures = !picture.figures().empty();
-    const std::string compared_with = picture.verdict == Verdict::kStale
-                                          ? ""
-                                          : std::filesystem::path(picture.reference).filename().string();
-    return {{"name", picture.name},
-            {"scene", picture.scene},
-            {"time_s", picture.time_s},
-            {"result", word_of(picture.verdict)},
-            {"cause", picture.cause},
-            {"group", picture.group},
-            {"compared_with", compared_with},
-            {"new", picture.drawn_path},
-            {"changed", picture.changed},
-            {"max", has_figures ? max_json(picture.difference) : nlohmann::json()},
-            {"mean", has_figures ? nlohmann::json(picture.difference.mean) : nlohmann::json()},
-            {"share", has_figures ? nlohmann::json(picture.difference.share) : nlohmann::json()}};
+    const bool is_stale = picture.verdict == Verdict::kStale;
+    const CauseText cause = cause_text(picture);
+    nlohmann::json json = figures_json(picture.difference);
+    json.update({{"name", picture.name},
+                 {"scene", picture.scene},
+                 {"time_s", picture.time_s},
+                 {"result", word_of(picture.verdict)},
+                 {"cause", cause.whole},
+                 {"group", cause.group},
+                 {"compared_with", is_stale ? "" : fs::path(picture.reference).filename().string()},
+                 {"new", picture.drawn_path},
+                 {"changed", picture.changed}});
+    return json;
 }
 
 std::string junit_xml(const SuiteResult& result) {
@@ -132,25 +182,22 @@ std::string junit_xml(const SuiteResult& result) {
 }
 
 std::string markdown(const SuiteResult& result) {
-    constexpr int kMaxRows = 200;  // a comment on GitHub has at most 65536 characters
+    constexpr std::size_t kMaxRows = 200;  // a comment on GitHub has at most 65536 characters
     std::string text = fmt::format("### Golden pictures\n\n{}\n", result.totals());
-    std::vector<const Checked*> failed;
+    std::vector<std::pair<const Checked*, CauseText>> failed;
     for (const Checked& picture : result.pictures)
-        if (picture.failed()) failed.push_back(&picture);
-    std::ranges::stable_sort(failed, {}, &Checked::group);
-    int rows = 0;
-    for (std::size_t i = 0; i < failed.size() && rows < kMaxRows; ++i, ++rows) {
-        const Checked& picture = *failed[i];
-        if (i == 0 || picture.group != failed[i - 1]->group)
+        if (picture.failed()) failed.emplace_back(&picture, cause_text(picture));
+    std::ranges::stable_sort(failed, {}, [](const auto& one) { return one.second.group; });
+    const std::size_t rows = std::min(failed.size(), kMaxRows);
+    for (std::size_t i = 0; i < rows; ++i) {
+        const auto& [picture, cause] = failed[i];
+        if (i == 0 || cause.group != failed[i - 1].second.group)
             text += fmt::format("\n**{}**\n\n| picture | result | difference | cause |\n|---|---|---|---|\n",
-                                cell(picture.group));
-        std::string cause = picture.cause;
-        if (cause.ends_with(picture.group)) cause.resize(cause.size() - picture.group.size());
-        if (cause.ends_with("; ")) cause.resize(cause.size() - 2);
-        text += fmt::format("| {} | {} | {} | {} |\n", cell(picture.name), word_of(picture.verdict),
-                            picture.figures(), cell(cause));
+                                cell(cause.group));
+        text += fmt::format("| {} | {} | {} | {} |\n", cell(picture->name), word_of(picture->verdict),
+                            figures_text(*picture), cell(cause.own));
     }
-    if (std::cmp_less(rows, failed.size())) text += fmt::format("\nand {} more\n", std::ssize(failed) - rows);
+    if (rows < failed.size()) text += fmt::format("\nand {} more\n", failed.size() - rows);
     return text;
 }
 

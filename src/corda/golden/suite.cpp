@@ -13,10 +13,9 @@
 #include "corda/core/machine.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/workers.hpp"
-#include "corda/golden/cases.hpp"
-#include "corda/golden/record.hpp"
-#include "corda/media/bytes.hpp"
 #include "corda/film/film_renderer.hpp"
+#include "corda/golden/cases.hpp"
+#include "corda/media/bytes.hpp"
 
 namespace corda::golden {
 namespace {
@@ -35,51 +34,50 @@ struct Drawn {
     const std::vector<Setting>& settings;  ///< of the suite
 };
 
-/// Compares a picture with one of its references; false if it does not pass.
-bool passes(const Drawn& drawn, const DifferenceLimits& limits, const std::string& path, Checked& picture) {
+/// A picture as it compares with one of its references.
+Checked compared(const Drawn& drawn, const std::string& path, Checked picture) {
+    const GoldenDef& golden = *drawn.scene.golden;
     picture.reference = path;
+    picture.verdict = Verdict::kDifferent;
     Picture reference;
     try {
         reference = read_picture(path);
     } catch (const Error& error) {
-        picture.difference = {.same_size = false, .equal = false};
-        picture.group = is_no_png(path) ? "is no PNG, and --update --force replaces it"
-                                        : "is damaged, and --update replaces it";
-        picture.cause = fmt::format("the kept picture {} ({})", picture.group, error.what());
-        return false;
+        const auto kind = is_no_png(path) ? Cause::Kind::kReferenceIsNoPng : Cause::Kind::kReferenceIsDamaged;
+        picture.cause = {.kind = kind, .message = error.what()};
+        return picture;
     }
-    picture.difference = reference.deep ? compare(reference, {.image = drawn.image}, drawn.mask)
-                                        : compare(reference.image, drawn.image, drawn.mask);
-    if (picture.difference.within(limits)) return true;
-    const Cause cause = cause_of(provenance_in(read_png_info(path)), drawn.made, drawn.scene, drawn.settings);
-    picture.cause = cause.text;
-    picture.group = cause.group;
-    if (!picture.difference.same_size)
-        picture.cause = picture.group =
-            fmt::format("{}x{} pixels, now {}x{}", reference.image.width(), reference.image.height(),
-                        drawn.image.width(), drawn.image.height());
-    return false;
+    const Difference difference = reference.deep ? compare(reference, {.image = drawn.image}, drawn.mask)
+                                                 : compare(reference.image, drawn.image, drawn.mask);
+    if (!difference.same_size) {
+        const auto size_text = [](const Image& image) {
+            return fmt::format("{}x{}", image.width(), image.height());
+        };
+        picture.cause = {
+            .kind = Cause::Kind::kSize, .stored = size_text(reference.image), .now = size_text(drawn.image)};
+        return picture;
+    }
+    picture.difference = difference;
+    if (difference.within({.max = golden.max, .mean = golden.mean, .share = golden.share}))
+        picture.verdict = Verdict::kPassed;
+    else
+        picture.cause = cause_of(provenance_in(read_png_info(path)), drawn.made, drawn.scene, drawn.settings);
+    return picture;
 }
 
 /// Compares a picture with its references until one passes. If none does, the result is that of the plain
 /// one.
-void judge(const Drawn& drawn, const std::vector<std::string>& variants, Checked& picture) {
-    const GoldenDef& golden = *drawn.scene.golden;
-    const DifferenceLimits limits{.max = golden.max, .mean = golden.mean, .share = golden.share};
-    picture.verdict = variants.empty() ? Verdict::kMissing : Verdict::kDifferent;
-    std::optional<Checked> failed;
+Checked judged(const Drawn& drawn, const std::vector<std::string>& variants, Checked picture) {
+    Checked result = picture;
+    result.verdict = Verdict::kMissing;
+    result.cause = {.kind = Cause::Kind::kNoReference};
     for (const std::string& path : variants) {
-        Checked result = picture;
-        if (passes(drawn, limits, path, result)) {
-            picture = result;
-            picture.verdict = Verdict::kPassed;
-            picture.cause = picture.group = "";
-            return;
-        }
-        if (!failed || fs::path(path).filename() == picture.name) failed = result;
+        Checked one = compared(drawn, path, picture);
+        if (one.verdict == Verdict::kPassed) return one;
+        if (result.verdict == Verdict::kMissing || fs::path(path).filename() == picture.name)
+            result = std::move(one);
     }
-    if (failed) picture = *failed;
-    if (picture.verdict == Verdict::kMissing) picture.group = "there is no reference";
+    return result;
 }
 
 /// A scene that is being drawn.
@@ -135,13 +133,11 @@ class Runner {
             const auto start = std::chrono::steady_clock::now();
             renderer->draw(picture.time_s);
             const Image& drawn = renderer->image();
-            judge({drawn, job.made, job.film->scene(), job.scene->mask ? &*job.scene->mask : nullptr,
-                   def_.settings},
-                  variants_of(references_, picture.name), picture);
+            picture = judged({drawn, job.made, job.film->scene(),
+                              job.scene->mask ? &*job.scene->mask : nullptr, def_.settings},
+                             variants_of(references_, picture.name), picture);
             if (renderer->shows_nothing() || has_one_color(drawn)) {
                 picture.verdict = Verdict::kEmpty;
-                picture.cause = "nothing is in view" + (picture.cause.empty() ? "" : "; " + picture.cause);
-                if (picture.group.empty()) picture.group = "nothing is in view";
             } else if (def_.update || !def_.new_folder.empty()) {
                 add_file(job, drawn, picture);
             }
@@ -164,7 +160,7 @@ class Runner {
         if (picture.verdict == Verdict::kPassed) {
             if (!def_.update || fs::path(picture.reference).filename() != picture.name) return;
             if (provenance_in(read_png_info(path)).golden) return;
-            picture.cause = "the same pixels, without a record of how they were made";
+            picture.cause = {.kind = Cause::Kind::kLostRecord};
         }
         if (!def_.force && is_no_png(path)) return;
         picture.changed = def_.update;
@@ -204,17 +200,25 @@ void note_lost_records(const SuiteDef& def, const std::vector<Case>& cases, Suit
             if (picture.selected && lacks_record((fs::path(def.folder) / picture.name).string()))
                 names.push_back(picture.name);
     if (names.empty()) return;
-    constexpr std::size_t kMaxNames = 3;
-    const std::size_t shown = std::min(names.size(), kMaxNames);
-    std::string list = names.front();
-    for (std::size_t i = 1; i < shown; ++i) list += ", " + names[i];
-    if (names.size() > shown) list += ", ...";
     result.notes.push_back(fmt::format(
         "{} of how it was made, so that a failure cannot say why: {}; run corda golden --update, and keep "
         "the texts of PNG files (a tool such as oxipng --strip removes them)",
         names.size() == 1 ? "1 picture has no record"
                           : fmt::format("{} pictures have no record", names.size()),
-        list));
+        listed(names, 3)));
+}
+
+/// A reference that no scene asks for.
+Checked stale_picture(const SuiteDef& def, const std::string& path) {
+    const auto kind = is_no_png(path)      ? Cause::Kind::kUnaskedNoPng
+                      : lacks_record(path) ? Cause::Kind::kUnaskedUnrecorded
+                                           : Cause::Kind::kUnasked;
+    return {.scene = {},
+            .name = fs::path(path).filename().string(),
+            .verdict = Verdict::kStale,
+            .reference = path,
+            .cause = {.kind = kind},
+            .changed = def.update && (kind == Cause::Kind::kUnasked || def.force)};
 }
 
 /// Throws corda::Error (kIo) if there is a folder, a pipe or a device where a picture is to be.
@@ -231,52 +235,29 @@ void require_files(const SuiteDef& def, const std::vector<Case>& cases) {
 }  // namespace
 
 SuiteResult run(const SuiteDef& def) {
-    std::vector<Checked> invalid;
     SuiteResult result{.may_change = def.update, .dry_run = def.dry_run};
-    std::vector<std::string> passed_over;
-    std::vector<Case> cases = load_cases(def, invalid, passed_over);
-    const std::vector<std::string> references = references_in(def.folder);
-    std::vector<std::string> stale =
-        invalid.empty() ? stale_ones(def, cases, references) : std::vector<std::string>{};
-    select(def, cases, stale, invalid);
-    report_skipped_files(passed_over, stale, result);
-    require_files(def, cases);
-    std::erase_if(cases,
+    Suite suite = load_suite(def);
+    select(def, suite);
+    report_skipped_files(suite, result);
+    require_files(def, suite.cases);
+    std::erase_if(suite.cases,
                   [](const Case& one) { return std::ranges::none_of(one.pictures, &Checked::selected); });
     std::int64_t all = 0;
-    for (const Case& one : cases) {
-        all += std::ranges::count_if(one.pictures, &Checked::selected);
-    }
-    Runner runner(def, references, all);
-    runner.check(cases);
-    if (!def.new_folder.empty()) write_new(def, cases, runner.files());
-    if (!def.update) note_lost_records(def, cases, result);
-    for (Case& one : cases) {
+    for (const Case& one : suite.cases) all += std::ranges::count_if(one.pictures, &Checked::selected);
+    Runner runner(def, suite.references, all);
+    runner.check(suite.cases);
+    if (!def.new_folder.empty()) write_new(def, suite.cases, runner.files());
+    if (!def.update) note_lost_records(def, suite.cases, result);
+    for (Case& one : suite.cases)
         std::copy_if(std::make_move_iterator(one.pictures.begin()),
                      std::make_move_iterator(one.pictures.end()), std::back_inserter(result.pictures),
                      [](const Checked& picture) { return picture.selected; });
-    }
     std::vector<std::string> removed;
-    for (const std::string& path : stale) {
-        const bool is_foreign = is_no_png(path);
-        const bool is_lost = is_foreign || lacks_record(path);
-        const bool is_removed = def.update && (!is_lost || def.force);
-        if (is_removed) removed.push_back(path);
-        constexpr const char* kNoScene = "no scene asks for it";
-        result.pictures.push_back(
-            {.scene = {},
-             .name = fs::path(path).filename().string(),
-             .verdict = Verdict::kStale,
-             .reference = path,
-             .cause = is_foreign ? "no scene asks for it; it is no PNG, and --update --force removes it"
-                      : is_lost  ? "no scene asks for it; it has no record of how it was made, and --update "
-                                   "--force removes it"
-                                 : kNoScene,
-             .group = kNoScene,
-             .changed = is_removed,
-             .has_no_record = is_lost});
+    for (const std::string& path : suite.stale) {
+        result.pictures.push_back(stale_picture(def, path));
+        if (result.pictures.back().changed) removed.push_back(path);
     }
-    std::move(invalid.begin(), invalid.end(), std::back_inserter(result.pictures));
+    std::ranges::move(suite.invalid, std::back_inserter(result.pictures));
     if (def.update && !def.dry_run) publish(def.folder, runner.files(), removed);
     return result;
 }

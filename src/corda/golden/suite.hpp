@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "corda/golden/compare.hpp"
-#include "corda/film/film.hpp"
+#include "corda/golden/record.hpp"
 
 namespace corda::golden {
 
@@ -45,22 +45,16 @@ struct Checked {
     std::string name;  ///< of its file in the folder of references; of a scene, its path
     double time_s = 0.0;
     Verdict verdict = Verdict::kPassed;
-    Difference difference{};
-    std::string reference{};       ///< path that it was compared with last; empty: none
-    std::string drawn_path{};      ///< in SuiteDef::new_folder; empty: it was not written
-    std::string cause{};           ///< why it failed, in words
-    std::string group{};           ///< the same for all that fail for this reason
-    double seconds = 0.0;          ///< that drawing and comparing took
+    std::optional<Difference> difference{};  ///< from a reference of the same size
+    std::string reference{};                 ///< path that it was compared with last; empty: none
+    std::string drawn_path{};                ///< in SuiteDef::new_folder; empty: it was not written
+    Cause cause{};                           ///< of what is not as it was kept
+    double seconds = 0.0;                    ///< that drawing and comparing took
     bool changed = false;          ///< written or removed by an update, or to be: then it is no failure
-    bool has_no_record = false;    ///< stale by its name alone: removed with SuiteDef::force alone
     bool selected = true;          ///< see SuiteDef::only; others are not in a result
     std::optional<Image> drawn{};  ///< if it failed, see SuiteDef::most_drawn
 
     [[nodiscard]] bool failed() const { return verdict != Verdict::kPassed && !changed; }
-    /// The cause, or what it has in common with others.
-    [[nodiscard]] const std::string& why() const { return cause.empty() ? group : cause; }
-    /// The figures of the difference, if there are any.
-    [[nodiscard]] std::string figures() const;
 };
 
 struct SuiteResult {
@@ -91,10 +85,23 @@ struct SuiteResult {
 /// reference.
 [[nodiscard]] SuiteResult accept(const SuiteDef& def);
 
+/// "max 3, mean 0.1, share 0.02"; empty if a picture has no figures.
+[[nodiscard]] std::string figures_text(const Checked& picture);
+
+/// The cause of a failure in words.
+struct CauseText {
+    std::string group;    ///< the same for all pictures that fail for this reason, whatever the figures
+    std::string own;      ///< what it says of this picture beyond that
+    std::string whole{};  ///< empty if the verdict says it all
+
+    [[nodiscard]] const std::string& whole_or_group() const { return whole.empty() ? group : whole; }
+};
+[[nodiscard]] CauseText cause_text(const Checked& picture);
+
 /// A picture in the results of `corda golden --json`, and in golden.json.
 [[nodiscard]] nlohmann::json picture_json(const Checked& picture);
-/// The largest difference: a whole number, but of pictures with 16 bits.
-[[nodiscard]] nlohmann::json max_json(const Difference& difference);
+/// The keys "max", "mean" and "share" of a difference; null if there are no figures.
+[[nodiscard]] nlohmann::json figures_json(const std::optional<Difference>& difference);
 
 /// As JUnit's XML: a test suite per scene, a test case per picture.
 [[nodiscard]] std::string junit_xml(const SuiteResult& result);

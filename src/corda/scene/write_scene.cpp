@@ -259,13 +259,13 @@ std::string write_scene(const Scene& scene) {
     std::string toml = "schema = 1\n";
     for (const auto* const some : {&tables.solver, &tables.plain, &tables.bodies})
         for (const Table& table : *some) toml += text_of(table);
-    std::vector<std::string> changes;
+    std::vector<KeyChange> changes;
     try {
         changes = differences(values_of(tables), values_of(parse_scene(toml, scene.source)));
     } catch (const Error& error) {
         fail_unwritable(error.what());
     }
-    if (!changes.empty()) fail_unwritable(differences_text(changes));
+    if (!changes.empty()) fail_unwritable(changes_text(changes));
     return toml;
 }
 
@@ -280,34 +280,35 @@ std::map<std::string, std::string> values_of(const Scene& scene) {
     return values_of(Tables(scene));
 }
 
-std::vector<std::string> differences(const std::map<std::string, std::string>& now,
-                                     const std::map<std::string, std::string>& before) {
-    constexpr std::size_t kMaxText = 64;
-    std::vector<std::string> changes;
-    const auto value_in = [](const std::map<std::string, std::string>& values, const std::string& key) {
-        const auto found = values.find(key);
-        return found == values.end() ? std::string("not given") : found->second;
-    };
-    const auto compare = [&](const std::string& key) {
-        const std::string value = value_in(now, key);
-        const std::string old = value_in(before, key);
-        if (value == old) return;
-        const bool is_long = std::max(value.size(), old.size()) > kMaxText;
-        changes.push_back(is_long ? key + " has other values"
-                                  : fmt::format("{} is {} and was {}", key, value, old));
-    };
-    for (const auto& [key, value] : now) compare(key);
+std::vector<KeyChange> differences(const std::map<std::string, std::string>& now,
+                                   const std::map<std::string, std::string>& before) {
+    std::vector<KeyChange> changes;
+    for (const auto& [key, value] : now) {
+        const auto old = before.find(key);
+        if (old == before.end())
+            changes.push_back({key, value, {}});
+        else if (old->second != value)
+            changes.push_back({key, value, old->second});
+    }
     for (const auto& [key, value] : before)
-        if (!now.contains(key)) compare(key);
+        if (!now.contains(key)) changes.push_back({key, {}, value});
     return changes;
 }
 
-std::string differences_text(const std::vector<std::string>& differences) {
+std::string changes_text(const std::vector<KeyChange>& changes) {
     constexpr std::size_t kMaxNamed = 20;
-    const std::size_t shown = std::min(differences.size(), kMaxNamed);
-    std::string text = fmt::format(
-        "{}", fmt::join(differences.begin(), differences.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
-    if (shown < differences.size()) text += fmt::format(", and {} more", differences.size() - shown);
+    constexpr std::size_t kMaxValue = 64;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(changes.size(), kMaxNamed); ++i) {
+        const auto& [key, given, given_before, is_set] = changes[i];
+        const std::string now = given.value_or("not given");
+        const std::string before = given_before.value_or("not given");
+        const bool is_long = std::max(now.size(), before.size()) > kMaxValue;
+        text += (i > 0 ? ", " : "") + key +
+                (is_long ? " has other values" : fmt::format(" is {} and was {}", now, before)) +
+                (is_set ? " (by --set)" : "");
+    }
+    if (changes.size() > kMaxNamed) text += fmt::format(", and {} more", changes.size() - kMaxNamed);
     return text;
 }
 

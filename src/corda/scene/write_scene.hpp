@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,11 +24,19 @@ namespace corda {
 /// have equal frames, whatever they were read from.
 [[nodiscard]] std::map<std::string, std::string> values_of(const Scene& scene);
 
-/// All differences between values by their keys: "video.crf is 18 and was 20". Empty if they are equal.
-[[nodiscard]] std::vector<std::string> differences(const std::map<std::string, std::string>& now,
-                                                   const std::map<std::string, std::string>& before);
+/// A key whose value differs.
+struct KeyChange {
+    std::string key;
+    std::optional<std::string> now;     ///< none: it is not given
+    std::optional<std::string> before;  ///< none: it was not given
+    bool is_set = false;                ///< a setting gives the value, not the file
+};
 
-/// The first differences as one text, and the number of the others: "... and 3 more".
-[[nodiscard]] std::string differences_text(const std::vector<std::string>& differences);
+/// All keys whose values differ; those of `now` first.
+[[nodiscard]] std::vector<KeyChange> differences(const std::map<std::string, std::string>& now,
+                                                 const std::map<std::string, std::string>& before);
+
+/// "video.crf is 18 and was 20, world.drag is 1 and was 0 (by --set)". Many end in "and 3 more".
+[[nodiscard]] std::string changes_text(const std::vector<KeyChange>& changes);
 
 }  // namespace corda

@@ -47,8 +47,7 @@ Response Review::answer(const Request& request) {
         Json all = Json::array();
         for (const Checked& picture : pictures_) {
             Json json = golden::picture_json(picture);
-            json["group"] = picture.group.empty() ? word_of(picture.verdict) : picture.group;
-            json["figures"] = picture.figures();
+            json["figures"] = figures_text(picture);
             json["has_reference"] = !picture.reference.empty();
             json["has_new"] = !picture.drawn_path.empty();
             json["accepted"] = accepted_.contains(picture.name);
