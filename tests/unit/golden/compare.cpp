@@ -22,14 +22,39 @@ std::array<int, 4> pixel(const Image& image, int x, int y) {
     return {p[0], p[1], p[2], p[3]};
 }
 
-TEST(Compare, EqualPictures) {
-    const Difference result = compare(grey(5, 4), grey(5, 4));
-    EXPECT_TRUE(result.same_size);
-    EXPECT_TRUE(result.equal);
-    EXPECT_EQ(result.max, 0);
-    EXPECT_EQ(result.mean, 0.0);
-    EXPECT_EQ(result.share, 0.0);
-    EXPECT_TRUE(result.within({}));
+/// A picture of 5x4 pixels in which one channel of the last differs.
+Image off_by(int channel, int change) {
+    Image image = grey(5, 4);
+    image.pixel(4, 3)[channel] = static_cast<std::uint8_t>(100 + change);
+    return image;
+}
+
+TEST(Compare, CountsAllChannelsOfAllPixels) {
+    const struct {
+        Image a;
+        Image b;
+        double max;
+        double mean;
+        double share;
+    } cases[] = {
+        {grey(5, 4), grey(5, 4), 0, 0, 0},
+        {Image(), Image(), 0, 0, 0},
+        {grey(5, 4), off_by(0, 1), 1, 1.0 / 80, 1.0 / 20},
+        {grey(5, 4), off_by(1, -1), 1, 1.0 / 80, 1.0 / 20},
+        {grey(5, 4), off_by(2, 1), 1, 1.0 / 80, 1.0 / 20},
+        {grey(5, 4), off_by(3, -1), 1, 1.0 / 80, 1.0 / 20},  // alpha counts like the others
+        {grey(3, 3, 0), grey(3, 3, 255), 255, 255, 1},
+    };
+    for (const auto& [a, b, max, mean, share] : cases) {
+        const Difference result = compare(a, b);
+        EXPECT_TRUE(result.same_size);
+        EXPECT_EQ(result.equal, max == 0);
+        EXPECT_EQ(result.max, max);
+        EXPECT_EQ(result.mean, mean);
+        EXPECT_EQ(result.share, share);
+        EXPECT_EQ(result.within({}), max == 0);
+        EXPECT_TRUE(result.within({.max = 255, .mean = 255, .share = 1}));
+    }
 }
 
 Picture deep_grey(std::uint16_t level) {
@@ -92,29 +117,6 @@ TEST(Compare, CanBeCancelled) {
     }
 }
 
-TEST(Compare, OneChannelOffByOne) {
-    for (int channel = 0; channel < 4; ++channel) {  // alpha counts like the others
-        for (const int change : {-1, 1}) {
-            Image b = grey(5, 4);
-            b.pixel(4, 3)[channel] = static_cast<std::uint8_t>(100 + change);
-            const Difference result = compare(grey(5, 4), b);
-            EXPECT_FALSE(result.equal);
-            EXPECT_EQ(result.max, 1);
-            EXPECT_EQ(result.mean, 1.0 / 80.0);
-            EXPECT_EQ(result.share, 1.0 / 20.0);
-            EXPECT_FALSE(result.within({}));
-        }
-    }
-}
-
-TEST(Compare, LargestDifference) {
-    const Difference result = compare(grey(3, 3, 0), grey(3, 3, 255));
-    EXPECT_EQ(result.max, 255);
-    EXPECT_EQ(result.mean, 255.0);
-    EXPECT_EQ(result.share, 1.0);
-    EXPECT_TRUE(result.within({.max = 255, .mean = 255, .share = 1}));
-}
-
 TEST(Compare, AnotherSizeIsNeverWithin) {
     for (const Image& other : {grey(4, 5), grey(5, 5), grey(20, 1), Image()}) {
         const Difference result = compare(grey(5, 4), other);
@@ -125,33 +127,22 @@ TEST(Compare, AnotherSizeIsNeverWithin) {
     }
 }
 
-TEST(Compare, EmptyPicturesAreEqual) {
-    EXPECT_TRUE(compare(Image(), Image()).within({}));
-}
-
-TEST(Within, HoldsAtTheBoundAndNotBeyond) {
+TEST(Within, HoldsAtTheBoundOfEachLimitThatIsGiven) {
     Image b = grey(10, 10);
     b.pixel(1, 1)[0] = 104;
     b.pixel(2, 1)[1] = 96;
-    const Difference result = compare(grey(10, 10), b);
-    EXPECT_EQ(result.max, 4);
-    EXPECT_EQ(result.mean, 8.0 / 400.0);
-    EXPECT_EQ(result.share, 2.0 / 100.0);
-    EXPECT_TRUE(result.within({.max = 4, .mean = {}, .share = {}}));
-    EXPECT_FALSE(result.within({.max = 3.99, .mean = {}, .share = {}}));
-    EXPECT_TRUE(result.within({.max = {}, .mean = 0.02, .share = {}}));
-    EXPECT_FALSE(result.within({.max = {}, .mean = 0.0199, .share = {}}));
-    EXPECT_TRUE(result.within({.max = {}, .mean = {}, .share = 0.02}));
-    EXPECT_FALSE(result.within({.max = {}, .mean = {}, .share = 0.0199}));
-}
-
-TEST(Within, NeedsAllLimitsThatAreGiven) {
-    Image b = grey(10, 10);
-    b.pixel(1, 1)[0] = 104;
-    const Difference result = compare(grey(10, 10), b);
-    EXPECT_TRUE(result.within({.max = 4, .mean = 1, .share = 0.01}));
-    EXPECT_FALSE(result.within({.max = 4, .mean = 1, .share = 0.001}));
-    EXPECT_FALSE(result.within({.max = 0, .mean = 1, .share = 1}));
+    const Difference result = compare(grey(10, 10), b);  // max 4, mean 0.02, share 0.02
+    const struct {
+        DifferenceLimits limits;
+        bool is_within;
+    } cases[] = {
+        {{.max = 4, .mean = {}, .share = {}}, true},    {{.max = 3.99, .mean = {}, .share = {}}, false},
+        {{.max = {}, .mean = 0.02, .share = {}}, true}, {{.max = {}, .mean = 0.0199, .share = {}}, false},
+        {{.max = {}, .mean = {}, .share = 0.02}, true}, {{.max = {}, .mean = {}, .share = 0.0199}, false},
+        {{.max = 4, .mean = 1, .share = 0.02}, true},   {{.max = 4, .mean = 1, .share = 0.001}, false},
+        {{.max = 0, .mean = 1, .share = 1}, false},
+    };
+    for (const auto& [limits, is_within] : cases) EXPECT_EQ(result.within(limits), is_within);
 }
 
 TEST(DifferenceImage, ShowsEqualPixelsAsDimGrey) {
