@@ -115,17 +115,6 @@ std::string scene_in_name(const std::string& name) {
     return name.substr(0, begin);
 }
 
-/// The scene of a file; none if it is of another program. Throws corda::Error.
-std::optional<Case> case_of(const std::string& file, bool is_named, const SuiteDef& def,
-                            std::set<std::string>& names) {
-    std::error_code none;  // the reader reports the error
-    if (fs::status(file, none).type() == fs::file_type::not_found && fs::is_symlink(file, none))
-        throw_error(ExitCode::kInvalidScene, "{}: a link to nothing; restore that file, or remove the link",
-                    file);
-    if (!is_named && !has_schema(file_bytes(file))) return std::nullopt;
-    return make_case(file, def, names);
-}
-
 /// References that `corda golden` made and no scene asks for; if scenes are named one by one, of these alone.
 /// Made by it are those that say so, and those without a record whose names are SCENE_tSSSS_FFFFFF.png.
 std::vector<std::string> stale_ones(const SuiteDef& def, const Suite& suite) {
@@ -157,11 +146,16 @@ Suite load_suite(const SuiteDef& def) {
     std::set<std::string> names;
     std::error_code none;  // the reader reports the error
     const auto add = [&](const std::string& file, bool is_named) {
-        std::optional<Case> made = case_of(file, is_named, def, names);
-        if (!made)
+        if (fs::status(file, none).type() == fs::file_type::not_found && fs::is_symlink(file, none))
+            throw_error(ExitCode::kInvalidScene,
+                        "{}: a link to nothing; restore that file, or remove the link", file);
+        if (!is_named && !has_schema(file_bytes(file))) {
             suite.passed_over.push_back(file);
-        else if (made->scene.golden)
-            suite.cases.push_back(std::move(*made));
+            return;
+        }
+        Case made = make_case(file, def, names);
+        if (made.scene.golden)
+            suite.cases.push_back(std::move(made));
         else if (is_named)
             throw_usage("'{}' has no table [golden]; add one, for instance [golden] with at = [0.0, 1.0]",
                         file);
@@ -212,22 +206,21 @@ void select(const SuiteDef& def, Suite& suite) {
                     is = is_used[i] = true;
         return is;
     };
-    const auto is_in_shard = [&](std::size_t i) {
-        return static_cast<std::int64_t>(i) % def.shard.count == def.shard.index;
-    };
-    for (std::size_t i = 0; i < suite.cases.size(); ++i) {
-        for (Checked& picture : suite.cases[i].pictures)
-            picture.selected = is_named(picture.name, picture.scene) && is_in_shard(i) && !def.stale_only;
+    std::int64_t count = 0;
+    const auto is_in_shard = [&] { return count++ % def.shard.count == def.shard.index; };
+    for (Case& one : suite.cases) {
+        const bool is_drawn = is_in_shard() && !def.stale_only;
+        for (Checked& picture : one.pictures)
+            picture.selected = is_named(picture.name, picture.scene) && is_drawn;
     }
-    std::size_t count = 0;
+    count = 0;
     std::erase_if(suite.stale, [&](const std::string& path) {
         const std::string name = fs::path(path).filename().string();
-        return !is_named(name, scene_in_name(name)) || !is_in_shard(count++);
+        return !is_named(name, scene_in_name(name)) || !is_in_shard();
     });
     count = 0;
-    std::erase_if(suite.invalid, [&](const Checked& scene) {
-        return !is_named(scene.name, scene.scene) || !is_in_shard(count++);
-    });
+    std::erase_if(suite.invalid,
+                  [&](const Checked& scene) { return !is_named(scene.name, scene.scene) || !is_in_shard(); });
     for (std::size_t i = 0; i < def.only.size(); ++i) {
         if (is_used[i]) continue;
         const auto likely = nearest(def.only[i], std::vector<std::string_view>(known.begin(), known.end()));

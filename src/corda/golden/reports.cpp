@@ -23,7 +23,7 @@ struct Words {
 };
 
 /// By Cause::Kind.
-constexpr std::array kWords{
+constexpr std::array kCauseWords{
     Words{"", ""},
     Words{"invalid scene", "{message}", true},
     Words{"there is no reference", "", true},
@@ -111,7 +111,7 @@ CauseText cause_text(const Checked& picture) {
             fmt::arg("now", cause.now), fmt::arg("changed", changes_text(cause.changed)),
             fmt::arg("chosen", cause.chosen.empty() ? "" : "another choice: " + changes_text(cause.chosen)));
     };
-    const Words& words = kWords.at(static_cast<std::size_t>(cause.kind));
+    const Words& words = kCauseWords.at(static_cast<std::size_t>(cause.kind));
     CauseText text{.group = filled_in(words.group), .own = filled_in(words.own)};
     text.whole = words.is_alone ? text.own : joined(text.group, text.own);
     if (picture.verdict != Verdict::kEmpty) return text;

@@ -25,18 +25,19 @@ namespace fs = std::filesystem;
 /// A thread of its own draws no fewer pictures: the context that it needs takes as long as some of them.
 constexpr std::size_t kMinApart = 8;
 
-/// A picture as it was drawn.
-struct Drawn {
-    const Image& image;
-    const GoldenRecord& made;
-    const Scene& scene;                    ///< that of its film
-    const Image* mask;                     ///< nullptr: none
-    const std::vector<Setting>& settings;  ///< of the suite
+/// A scene that is being drawn.
+struct Job {
+    Case* scene = nullptr;
+    std::optional<Film> film;
+    GoldenRecord made;
+    std::size_t left = 0;  ///< pictures to draw
 };
 
-/// A picture as it compares with one of its references.
-Checked compared(const Drawn& drawn, const std::string& path, Checked picture) {
-    const GoldenDef& golden = *drawn.scene.golden;
+/// A picture as it compares with one of its references. `settings`: of the suite.
+Checked compared(const Image& drawn, const Job& job, const std::vector<Setting>& settings,
+                 const std::string& path, Checked picture) {
+    const Scene& scene = job.film->scene();
+    const Image* const mask = job.scene->mask ? &*job.scene->mask : nullptr;
     picture.reference = path;
     picture.verdict = Verdict::kDifferent;
     Picture reference;
@@ -47,46 +48,24 @@ Checked compared(const Drawn& drawn, const std::string& path, Checked picture) {
         picture.cause = {.kind = kind, .message = error.what()};
         return picture;
     }
-    const Difference difference = reference.deep ? compare(reference, {.image = drawn.image}, drawn.mask)
-                                                 : compare(reference.image, drawn.image, drawn.mask);
+    const Difference difference =
+        reference.deep ? compare(reference, {.image = drawn}, mask) : compare(reference.image, drawn, mask);
     if (!difference.same_size) {
         const auto size_text = [](const Image& image) {
             return fmt::format("{}x{}", image.width(), image.height());
         };
         picture.cause = {
-            .kind = Cause::Kind::kSize, .stored = size_text(reference.image), .now = size_text(drawn.image)};
+            .kind = Cause::Kind::kSize, .stored = size_text(reference.image), .now = size_text(drawn)};
         return picture;
     }
     picture.difference = difference;
-    if (difference.within({.max = golden.max, .mean = golden.mean, .share = golden.share}))
+    if (difference.within(
+            {.max = scene.golden->max, .mean = scene.golden->mean, .share = scene.golden->share}))
         picture.verdict = Verdict::kPassed;
     else
-        picture.cause = cause_of(provenance_in(read_png_info(path)), drawn.made, drawn.scene, drawn.settings);
+        picture.cause = cause_of(provenance_in(read_png_info(path)), job.made, scene, settings);
     return picture;
 }
-
-/// Compares a picture with its references until one passes. If none does, the result is that of the plain
-/// one.
-Checked judged(const Drawn& drawn, const std::vector<std::string>& variants, Checked picture) {
-    Checked result = picture;
-    result.verdict = Verdict::kMissing;
-    result.cause = {.kind = Cause::Kind::kNoReference};
-    for (const std::string& path : variants) {
-        Checked one = compared(drawn, path, picture);
-        if (one.verdict == Verdict::kPassed) return one;
-        if (result.verdict == Verdict::kMissing || fs::path(path).filename() == picture.name)
-            result = std::move(one);
-    }
-    return result;
-}
-
-/// A scene that is being drawn.
-struct Job {
-    Case* scene = nullptr;
-    std::optional<Film> film;
-    GoldenRecord made;
-    std::size_t left = 0;  ///< pictures to draw
-};
 
 class Runner {
   public:
@@ -133,17 +112,15 @@ class Runner {
             const auto start = std::chrono::steady_clock::now();
             renderer->draw(picture.time_s);
             const Image& drawn = renderer->image();
-            picture = judged({drawn, job.made, job.film->scene(),
-                              job.scene->mask ? &*job.scene->mask : nullptr, def_.settings},
-                             variants_of(references_, picture.name), picture);
-            if (renderer->shows_nothing() || has_one_color(drawn)) {
+            picture = judged(drawn, job, picture);
+            if (renderer->shows_nothing() || has_one_color(drawn))
                 picture.verdict = Verdict::kEmpty;
-            } else if (def_.update || !def_.new_folder.empty()) {
+            else if (def_.update || !def_.new_folder.empty())
                 add_file(job, drawn, picture);
-            }
-            if (picture.failed()) keep(drawn, picture);
             picture.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-            count_one();
+            const std::lock_guard lock(mutex_);
+            if (picture.failed() && drawn_++ < def_.most_drawn) picture.drawn = drawn;
+            report_progress(def_.on_progress, ++done_, all_);
         }
         renderer.reset();
         {
@@ -152,6 +129,21 @@ class Runner {
             if (job.left > 0) return;
         }
         job.film.reset();
+    }
+
+    /// Compares a picture with its references until one passes. If none does, the result is that of the plain
+    /// one.
+    Checked judged(const Image& drawn, const Job& job, const Checked& picture) const {
+        Checked result = picture;
+        result.verdict = Verdict::kMissing;
+        result.cause = {.kind = Cause::Kind::kNoReference};
+        for (const std::string& path : variants_of(references_, picture.name)) {
+            Checked one = compared(drawn, job, def_.settings, path, picture);
+            if (one.verdict == Verdict::kPassed) return one;
+            if (result.verdict == Verdict::kMissing || fs::path(path).filename() == picture.name)
+                result = std::move(one);
+        }
+        return result;
     }
 
     /// Encodes a picture that is missing or differs, in an update also one without a record.
@@ -169,16 +161,6 @@ class Runner {
         std::string bytes = media::png_bytes(drawn, to_png_info(job.made, *job.film, picture.time_s));
         const std::lock_guard lock(mutex_);
         files_[picture.name] = std::move(bytes);
-    }
-
-    void keep(const Image& drawn, Checked& picture) {
-        const std::lock_guard lock(mutex_);
-        if (drawn_++ < def_.most_drawn) picture.drawn = drawn;
-    }
-
-    void count_one() {
-        const std::lock_guard lock(mutex_);
-        report_progress(def_.on_progress, ++done_, all_);
     }
 
     const SuiteDef& def_;
