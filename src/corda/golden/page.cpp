@@ -90,23 +90,17 @@ std::string figure_html(const char* kind, const std::string& caption, const Imag
         kind, caption, image.width(), image.height(), base64(media::png_bytes(image, {})), caption);
 }
 
-/// The reference of a picture, if it can be read.
-std::optional<Image> reference_of(const Checked& picture) {
-    if (picture.reference.empty()) return std::nullopt;
-    try {
-        return read_png(picture.reference);
-    } catch (const Error&) {
-        return std::nullopt;
-    }
-}
-
 std::string case_html(const Checked& picture) {
     std::string html =
         fmt::format("<section id=\"{0}\">\n<h2>{0}</h2>\n<p class=\"cause\">{1}</p>\n",
                     markup_text(picture.name), markup_text(cause_text(picture).whole_or_group()));
     if (picture.difference) html += fmt::format("<p class=\"figures\">{}</p>\n", figures_text(picture));
     const bool is_shown = picture.drawn || picture.verdict == Verdict::kStale;
-    const auto reference = is_shown ? reference_of(picture) : std::nullopt;
+    std::optional<Image> reference;
+    try {
+        if (is_shown && !picture.reference.empty()) reference = read_png(picture.reference);
+    } catch (const Error&) {  // the cause says it
+    }
     if (!is_shown) html += "<p>Too many pictures failed to show all of them; check this scene alone.</p>\n";
     if (reference && picture.drawn) html += kPageModes;
     html += "<div class=\"pictures\">\n";
@@ -121,21 +115,21 @@ std::string case_html(const Checked& picture) {
 
 Image amplified(const Image& a, const Image& b) {
     Image result(std::max(a.width(), b.width()), std::max(a.height(), b.height()));
+    const PixelRect both = a.rect().intersected(b.rect());
     for (int y = 0; y < result.height(); ++y) {
         for (int x = 0; x < result.width(); ++x) {
             std::uint8_t* const to = result.pixel(x, y);
             to[3] = 255;
-            const bool in_both = x < std::min(a.width(), b.width()) && y < std::min(a.height(), b.height());
-            if (!in_both) {
+            if (x >= both.x1 || y >= both.y1) {
                 to[2] = 255;
                 continue;
             }
-            const std::uint8_t* const p = a.pixel(x, y);
-            const std::uint8_t* const q = b.pixel(x, y);
-            const int alpha = std::abs(p[3] - q[3]);
+            const auto difference = [p = a.pixel(x, y), q = b.pixel(x, y)](int c) {
+                return std::abs(p[c] - q[c]);
+            };
             for (int c = 0; c < 3; ++c)
                 to[c] =
-                    static_cast<std::uint8_t>(std::min(255, kGain * std::max(alpha, std::abs(p[c] - q[c]))));
+                    static_cast<std::uint8_t>(std::min(255, kGain * std::max(difference(3), difference(c))));
         }
     }
     return result;

@@ -183,11 +183,9 @@ void note_lost_records(const SuiteDef& def, const std::vector<Case>& cases, Suit
                 names.push_back(picture.name);
     if (names.empty()) return;
     result.notes.push_back(fmt::format(
-        "{} of how it was made, so that a failure cannot say why: {}; run corda golden --update, and keep "
-        "the texts of PNG files (a tool such as oxipng --strip removes them)",
-        names.size() == 1 ? "1 picture has no record"
-                          : fmt::format("{} pictures have no record", names.size()),
-        listed(names, 3)));
+        "{} no record of how it was made, so that a failure cannot say why: {}; run corda golden --update, "
+        "and keep the texts of PNG files (a tool such as oxipng --strip removes them)",
+        counted(std::ssize(names), "picture") + (names.size() == 1 ? " has" : " have"), listed(names, 3)));
 }
 
 /// A reference that no scene asks for.

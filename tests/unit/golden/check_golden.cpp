@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <string>
 
-#include "corda/media/defs.hpp"
 #include "corda/film/provenance.hpp"
+#include "corda/media/defs.hpp"
 #include "corda/testing.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"
@@ -30,18 +30,19 @@ Image with_dot(std::uint8_t level) {
 class CheckGolden : public ::testing::Test {
   protected:
     CheckGolden() {
-        for (const char* const name : {"CORDA_GOLDEN_DIR", "CORDA_UPDATE_GOLDENS", "CORDA_GOLDEN_ARTIFACTS"})
-            unsetenv(name);
+        clear();
         std::filesystem::create_directory(folder_.file("ref"));
         write_png(folder_.file("ref/dot.png"), with_dot(200));
         setenv("CORDA_GOLDEN_DIR", folder_.file("ref").c_str(), 1);
     }
-    ~CheckGolden() override {
+    ~CheckGolden() override { clear(); }
+    CheckGolden(const CheckGolden&) = delete;
+    CheckGolden& operator=(const CheckGolden&) = delete;
+
+    static void clear() {
         for (const char* const name : {"CORDA_GOLDEN_DIR", "CORDA_UPDATE_GOLDENS", "CORDA_GOLDEN_ARTIFACTS"})
             unsetenv(name);
     }
-    CheckGolden(const CheckGolden&) = delete;
-    CheckGolden& operator=(const CheckGolden&) = delete;
 
     test::ScratchFolder folder_;
 };
