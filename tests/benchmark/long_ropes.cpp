@@ -45,7 +45,7 @@ void swing_of_long_rope(benchmark::State& bench) {
     double run_s = 0.0;
     for (auto _ : bench) {
         const double start_s = processor_s();
-        Recording recording(system.particle_count(), timeline.size(), 0);
+        Recording recording(system.particle_count(), timeline.size());
         plan = plan_body(system, WorldDef{},
                          {[](const MotionBounds&) { return 0.1 * kPixelM; }, timeline, {}, {}}, recording);
         const double planned_s = processor_s();

@@ -49,7 +49,7 @@ void plan_net(benchmark::State& bench) {
     const Timeline timeline(FrameRate(Rational{60, 1}), frames);
     const PlanDef def{[](const MotionBounds&) { return 0.1 * 4.4 / 1080.0; }, timeline, {}, {}};
     for (auto _ : bench) {
-        Recording recording(system.particle_count(), 1, 0);
+        Recording recording(system.particle_count(), 1);
         const double start_s = cpu_s();
         const BodyPlan plan = plan_body(system, WorldDef{}, def, recording);
         const double planned_s = cpu_s();

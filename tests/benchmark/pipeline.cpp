@@ -4,7 +4,8 @@
 
 #include <vector>
 
-#include "corda/film/film_renderer.hpp"
+#include "corda/film/draw.hpp"
+#include "corda/film/film.hpp"
 
 namespace corda {
 namespace {
@@ -18,11 +19,13 @@ void count_frames(benchmark::State& bench) {
 
 /// Draws the first frames one after the other.
 template <class Use>
-void draw_frames(Film& film, const Use& use) {
-    FilmRenderer renderer(film);
+void draw_frames(const Film& film, const Use& use) {
+    const render::CanvasUse canvas(film.context_def());
     for (int k = 0; k < kFrames; ++k) {
-        const Damage damage = renderer.draw(film.time_s(k));
-        use(renderer.image(), damage);
+        const Damage damage =
+            film::paint(film.look(), film.motion(), film.time_s(k), film.scene().video.shutter, *canvas)
+                .damage;
+        use(canvas->image(), damage);
     }
 }
 
@@ -41,8 +44,7 @@ const Look kBlur16{"style.trail_s=0", "video.shutter=0.5", "video.subframes=16"}
 
 /// Drawing alone: the motion is there.
 void draw(benchmark::State& bench, const Look& look) {
-    Film film(load_scene(CORDA_EXAMPLES "/swing.toml", look));
-    static_cast<void>(film.camera());
+    const Film film(load_scene(CORDA_EXAMPLES "/swing.toml", look));
     for (auto _ : bench) draw_frames(film, [](const Image&, const Damage&) {});
     count_frames(bench);
 }

@@ -12,8 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "corda/film/film.hpp"
 #include "corda/media/defs.hpp"
-#include "corda/film/film_renderer.hpp"
 #include "support/command.hpp"
 #include "support/decode_video.hpp"
 #include "support/image_matchers.hpp"
@@ -187,16 +187,15 @@ TEST_F(Video, StillsAreTheFramesBeforeEncodingByteForByte) {
     ASSERT_EQ(run_corda({"still", scene_, "--frame", "22", "-o", folder_.file("frame.png")}).exit_code, 0);
     // The frames of the video, drawn in order as by `render`.
     Film film(load_scene(scene_));
-    FilmRenderer painter(film);
     const std::map<int, std::string> stills{
         {0, "0000_000000"}, {3, "0000_100000"}, {15, "0000_500000"}, {22, "0000_733333"}};
     for (int k = 0; k <= 22; ++k) {
-        painter.draw(film.time_s(k));
+        const Image frame = film.frame(k);
         if (!stills.contains(k)) continue;
         const std::string path = folder_.file("at/scene_t" + stills.at(k) + ".png");
-        EXPECT_TRUE(test::equal_images(read_png(path), painter.image())) << path;
+        EXPECT_TRUE(test::equal_images(read_png(path), frame)) << path;
     }
-    EXPECT_TRUE(test::equal_images(read_png(folder_.file("frame.png")), painter.image()));
+    EXPECT_TRUE(test::equal_images(read_png(folder_.file("frame.png")), film.frame(22)));
 }
 
 TEST_F(Video, StillsAcceptFrameRanges) {

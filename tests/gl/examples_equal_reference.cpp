@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "corda/film/draw.hpp"
 #include "corda/film/film.hpp"
-#include "corda/film/scene_renderer.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "support/draw_list_of.hpp"
 #include "support/files.hpp"
@@ -32,17 +32,14 @@ TEST_P(Examples, EqualTheReferenceByteForByte) {
             std::vector<Setting> settings{std::string("video.size=") + size};
             if (*width != '\0') settings.push_back(std::string("style.rope_width_px=") + width);
             const Scene scene = load_scene(GetParam(), settings);
-            film::SceneRenderer renderer(scene, film.system(), "auto", false);
-            const film::SceneRenderer::Use use(renderer);
-            const CameraDef camera = renderer.fit(motion);
+            const film::Look look = film::look_within(scene, film.system(), motion);
+            const render::CanvasUse canvas(film.context_def());
             for (const State& state : states) {
-                const view::Camera map = renderer.map_of(camera);
-                view::Caption caption;
-                renderer.locate_labels(state, map, caption);
-                renderer.draw(state, map, caption);
-                const Image expected =
-                    render::render_reference(test::draw_list_of(scene, film.system(), camera, state, motion));
-                EXPECT_TRUE(test::equal_images(renderer.image(), expected))
+                film::draw(look, state, canvas->list());
+                canvas->paint(canvas->list());
+                const Image expected = render::render_reference(
+                    test::draw_list_of(scene, film.system(), look.camera, state, motion));
+                EXPECT_TRUE(test::equal_images(canvas->image(), expected))
                     << size << ", rope width \"" << width << "\" at " << state.time_s << " s";
             }
         }

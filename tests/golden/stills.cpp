@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "corda/media/defs.hpp"
 #include "corda/film/film.hpp"
+#include "corda/media/defs.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/testing.hpp"
 #include "support/command.hpp"
@@ -29,7 +29,7 @@ namespace {
 constexpr double kTimeSeconds = 0.7;
 
 /// A frame of a film by the reference renderer.
-Image reference_of(Film& film) {
+Image reference_of(const Film& film) {
     const view::DrawList sharp = test::draw_list_of(film, kTimeSeconds);
     const VideoDef& video = film.scene().video;
     if (video.shutter == 0.0) return render::render_reference(sharp);

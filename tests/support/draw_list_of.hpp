@@ -4,8 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "corda/film/draw.hpp"
 #include "corda/film/film.hpp"
-#include "corda/film/live_plot_data.hpp"
+#include "corda/film/live_plots.hpp"
 #include "corda/film/motion_input.hpp"
 #include "corda/film/plan_text.hpp"
 #include "corda/sim/recording.hpp"
@@ -23,16 +24,11 @@ inline void include(const State& state, std::vector<MotionBounds>& motion) {
     for (std::size_t i = 0; i < motion.size(); ++i) motion[i].include(state.x_m[i], state.y_m[i]);
 }
 
-/// The live plots of a film.
-inline std::vector<view::PlotData> plotted_of(Film& film) {
-    if (film.scene().overlay.plots.empty()) return {};
-    const film::LivePlotData curves(film.scene(), film.system());
-    std::vector<MethodDef> methods;
-    for (const BodyPlan& body : film.plan().bodies) methods.push_back(body.method);
-    return curves.read(
-        methods, film.scene().world.duration_s,
-        [&](double time_s) -> const State& { return film.state_at(time_s); },
-        [&](const State&) { return film.energy(); });
+/// The poses of a film at increasing times.
+inline view::DrawList poses_of(const Film& film, const std::vector<double>& times_s) {
+    view::DrawList list;
+    film::draw_poses(film.look(), film.motion(), times_s, list);
+    return list;
 }
 
 /// The draw list of a scene at a state, made without Film, for the reference renderer.
@@ -70,13 +66,13 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
 }
 
 /// The particles whose paths a film draws.
-inline std::vector<std::size_t> traced(Film& film) {
+inline std::vector<std::size_t> traced(const Film& film) {
     const Scene& scene = film.scene();
     return view::SceneView(film.system(), scene.world.gravity_m_s2, scene.style, scene.body_styles, 64, 64)
         .traced();
 }
 
-inline void add_points(Film& film, const State& state, double age_s, std::vector<view::Trail>& trails) {
+inline void add_points(const Film& film, const State& state, double age_s, std::vector<view::Trail>& trails) {
     const std::vector<std::size_t> ends = traced(film);
     for (std::size_t i = 0; i < ends.size(); ++i)
         trails[i].push_back({age_s,
@@ -85,7 +81,7 @@ inline void add_points(Film& film, const State& state, double age_s, std::vector
 }
 
 /// Adds the quantity that a film's colours show to a state.
-inline void add_values(Film& film, const State& state, sim::Histogram& histogram) {
+inline void add_values(const Film& film, const State& state, sim::Histogram& histogram) {
     const auto quantity = quantity_of(film.scene().style.color_by);
     if (!quantity) return;
     for (const Body& body : film.system().bodies) {
@@ -95,7 +91,7 @@ inline void add_values(Film& film, const State& state, sim::Histogram& histogram
 }
 
 /// The draw list of a film at a time.
-inline view::DrawList draw_list_of(Film& film, double time_s) {
+inline view::DrawList draw_list_of(const Film& film, double time_s) {
     std::vector<MotionBounds> motion;
     sim::Histogram histogram;
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
@@ -120,11 +116,13 @@ inline view::DrawList draw_list_of(Film& film, double time_s) {
     add_points(film, state, 0.0, trails);
     const view::Caption caption{
         time_s,
-        film.figures().energy_error,
+        film.figures_at(time_s).energy_error,
         method_caption(film.plan(), film.error_estimate_px(), film.scene().overlay.language),
         {}};
+    std::vector<view::PlotData> plots;
+    if (!scene.overlay.plots.empty()) plots = film::plots_of(scene, film.motion());
     return draw_list_of(film.scene(), film.system(), film.camera_at(time_s), state, motion, caption, trails,
-                        histogram, plotted_of(film), arrows);
+                        histogram, plots, arrows);
 }
 
 }  // namespace corda::test

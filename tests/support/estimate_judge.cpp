@@ -45,7 +45,7 @@ double error_m(const State& state, Vec2 origin_m, const Truth& truth) {
 
 /// True if the truth with other steps, and so with other rounding, differs far less than the error, and if
 /// its bars keep their lengths as well.
-bool is_sure(Film& film, const EstimateCase& given, const Verdict& verdict) {
+bool is_sure(const Film& film, const EstimateCase& given, const Verdict& verdict) {
     if (given.truth) return true;
     ExtendedMotion truth(film.system(), given.scene.world, given.start);
     ExtendedMotion other(film.system(), given.scene.world, given.start);
@@ -60,7 +60,7 @@ bool is_sure(Film& film, const EstimateCase& given, const Verdict& verdict) {
     return largest_m <= 0.1 * *verdict.ratio * verdict.estimate_m;
 }
 
-void compare(Film& film, const EstimateCase& given, bool beyond, Verdict& verdict) {
+void compare(const Film& film, const EstimateCase& given, bool beyond, Verdict& verdict) {
     ExtendedMotion motion(film.system(), given.scene.world, given.start);
     verdict.ratio = 0.0;
     const double until_s = verdict.horizon_s.value_or(given.scene.world.duration_s);

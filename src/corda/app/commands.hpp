@@ -163,15 +163,15 @@ struct GlOptions {
 [[nodiscard]] OnProgress show_progress(const Console& console, const std::string& what);
 
 /// Reports the methods that `auto` chose and their error estimates.
-void report_plan(const Console& console, Film& film);
+void report_plan(const Console& console, const Film& film);
 /// Warns of plots, and of names of curves, that have no room.
-void warn_of_room(const Console& console, Film& film);
+void warn_of_room(const Console& console, const Film& film);
 /// Warns if a method that the scene names took one of several ways. To be called when the motion is known.
 void warn_of_branch(const Console& console, const Film& film);
 
 /// The keys that every JSON result about a film has: method, sizes, error estimate, camera, passes; null for
 /// unknown values. Simulates the film if necessary.
-[[nodiscard]] nlohmann::json film_json(Film& film);
+[[nodiscard]] nlohmann::json film_json(const Film& film);
 
 /// Pictures in which nothing is in view.
 struct EmptyPictures {

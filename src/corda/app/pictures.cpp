@@ -148,6 +148,7 @@ Film FigureOptions::film_of(const Console& console, const Scene& one,
     FilmDef def;
     def.on_progress = show_progress(console, "simulate");
     def.stills_s = times_of(some);
+    def.stills_shutter = shutter_of(one);
     for (const double time_s : film_times_of_origin)
         if (time_s <= one.world.duration_s) def.stills_s.push_back(time_s);
     gl.apply_to(def);
@@ -287,7 +288,7 @@ void set_paths(const FigureOptions& options, std::vector<Still>& stills) {
 
 /// Draws and writes the stills, and counts the empty ones. If interrupted, the message says how many were
 /// written.
-void write_each(const std::vector<Still>& stills, const FigureOptions& options, Film& film,
+void write_each(const std::vector<Still>& stills, const FigureOptions& options, const Film& film,
                 EmptyPictures& empty) {
     std::size_t written = 0;
     const Scene& scene = film.scene();

@@ -73,7 +73,7 @@ void report_methods(const Console& console, const Film& film) {
     }
 }
 
-void report_in_words(const Console& console, Film& film, const std::vector<std::string>& terms) {
+void report_in_words(const Console& console, const Film& film, const std::vector<std::string>& terms) {
     console.result(fmt::format("{}: {}", film.scene().name, system_text(film.system())));
     for (const std::string& term : terms) console.result("modelled: " + term);
     report_methods(console, film);

@@ -72,7 +72,7 @@ void warn_of_horizon(const Console& console, const Film& film) {
 
 }  // namespace
 
-void report_plan(const Console& console, Film& film) {
+void report_plan(const Console& console, const Film& film) {
     for (const std::string& note : film.plan().notes) console.warning(note);
     if (!std::holds_alternative<AutoDef>(film.scene().solver)) return;
     if (const auto estimate = error_estimate_text(film)) {
@@ -84,7 +84,7 @@ void report_plan(const Console& console, Film& film) {
     warn_of_horizon(console, film);
 }
 
-void warn_of_room(const Console& console, Film& film) {
+void warn_of_room(const Console& console, const Film& film) {
     for (const std::string& problem : film.left_out())
         console.warning(fmt::format("{}: {}", film.scene().source, problem));
 }
@@ -119,7 +119,7 @@ ExitCode EmptyPictures::report(const Console& console, std::int64_t all, const C
     return are_failures ? ExitCode::kMismatch : ExitCode::kOk;
 }
 
-nlohmann::json film_json(Film& film) {
+nlohmann::json film_json(const Film& film) {
     const Plan& plan = film.plan();
     const System& system = film.system();
     nlohmann::json json = {{"schema", 1},
@@ -134,7 +134,7 @@ nlohmann::json film_json(Film& film) {
     const CameraDef& camera = film.camera();
     json["camera"] = {{"center", {camera.center_m->x, camera.center_m->y}}, {"height", *camera.height_m}};
     json["notes"] = plan.notes;
-    json["simulation_passes"] = film.simulation_passes();
+    json["simulation_passes"] = film.plan().simulation_passes;
     return json;
 }
 

@@ -16,12 +16,11 @@
 #include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
+#include "corda/film/film.hpp"
+#include "corda/film/plan_text.hpp"
 #include "corda/media/format/file_kind.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/media/write/video_file.hpp"
-#include "corda/film/film.hpp"
-#include "corda/film/film_renderer.hpp"
-#include "corda/film/plan_text.hpp"
 #include "corda/view/colors.hpp"
 #include "interrupt.hpp"
 
@@ -83,7 +82,7 @@ std::string words_of_interruption(const RenderOptions& options, std::int64_t cou
                        count, options.output);
 }
 
-nlohmann::json report(Film& film, const VideoDef& video, const RenderOptions& options,
+nlohmann::json report(const Film& film, const VideoDef& video, const RenderOptions& options,
                       const Rendered& rendered, double wall_s, const std::string& gl_renderer) {
     nlohmann::json json = film_json(film);
     json["output"] = options.output;

@@ -110,7 +110,7 @@ void add_figures(const Figures& figures, CsvLine& line) {
     line.add(figures.loads ? figures.loads->largest_tension_n : none);
 }
 
-void add_row(Film& film, const State& state, const Columns& columns, CsvLine& line) {
+void add_row(const Film& film, const State& state, const Columns& columns, CsvLine& line) {
     const System& system = film.system();
     const Vec2 origin_m = system.origin_m;
     line.add(state.time_s);
@@ -128,14 +128,15 @@ void add_row(Film& film, const State& state, const Columns& columns, CsvLine& li
             line.add(state.tension_n[k]);
     }
     if (columns.energy) {
-        const Energy energy = film.energy();
-        for (const double value_j : {film.figures().energy_change_j, energy.kinetic_j, energy.potential_j()})
+        const Energy energy = film.energy_of(state);
+        for (const double value_j :
+             {film.figures_at(state.time_s).energy_change_j, energy.kinetic_j, energy.potential_j()})
             line.add(value_j);
     }
-    if (columns.diagnostics) add_figures(film.figures(), line);
+    if (columns.diagnostics) add_figures(film.figures_at(state.time_s), line);
 }
 
-nlohmann::json report(Film& film) {
+nlohmann::json report(const Film& film) {
     const Figures& largest = film.diagnostics().largest;
     nlohmann::json json = film_json(film);
     json["steps"] = film.diagnostics().steps;
@@ -159,14 +160,14 @@ std::string cost_text(const Film& film) {
 }
 
 /// Writes the states of all frame times as CSV; without a file, only simulates.
-void write_states(const Console& console, Film& film, const SimulateOptions& options, OutputFile* csv) {
+void write_states(const Console& console, const Film& film, const SimulateOptions& options, OutputFile* csv) {
     Progress progress(console, "simulate", film.last_frame() + 1);
     if (csv != nullptr)
         csv->write(csv_header(named_in_files(film.scene(), film.system()), options.columns, options.style));
     CsvLine line(options.style);
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
         check_cancelled();
-        const State& state = film.state(k);
+        const State state = film.state(k);
         if (csv != nullptr) {
             add_row(film, state, options.columns, line);
             csv->write(line.end());
@@ -176,9 +177,9 @@ void write_states(const Console& console, Film& film, const SimulateOptions& opt
 }
 
 /// Warns of bodies whose tensions are missing.
-void warn_of_tensions(const Console& console, Film& film) {
+void warn_of_tensions(const Console& console, const Film& film) {
     const System& system = film.system();
-    const State& state = film.state(0);
+    const State state = film.state(0);
     std::vector<std::size_t> unknown;
     for (std::size_t i = 0; i < system.bodies.size(); ++i) {
         const auto first = state.tension_n.begin() + static_cast<std::ptrdiff_t>(system.bodies[i].first_bar);
@@ -209,7 +210,7 @@ void check_ending(const std::string& output) {
 }
 
 /// Simulates the motion and writes it, if there is an output.
-void write_output(const Console& console, Film& film, const SimulateOptions& options) {
+void write_output(const Console& console, const Film& film, const SimulateOptions& options) {
     std::unique_ptr<OutputFile> file;
     if (!options.output.empty()) {
         file = std::make_unique<OutputFile>(options.output, OutputOptions{.force = options.force});

@@ -7,7 +7,6 @@ namespace corda {
 namespace {
 
 thread_local const CancelScope* innermost = nullptr;
-thread_local int depth = 0;
 
 void require(bool goes_on) {
     if (!goes_on) throw Error(ExitCode::kInterrupted, "stopped by the caller");
@@ -16,11 +15,8 @@ void require(bool goes_on) {
 /// While a callback runs, no scope around it is asked.
 class Callback : NonCopyable {
   public:
-    Callback() { ++depth; }
-    ~Callback() {
-        --depth;
-        innermost = asked_;
-    }
+    Callback() = default;
+    ~Callback() { innermost = asked_; }
 
     [[nodiscard]] const CancelScope* asked() const { return asked_; }
 
@@ -59,10 +55,6 @@ void report_progress(const OnProgress& on_progress, std::int64_t done, std::int6
         require(on_progress(done, total));
     }
     check_cancelled();
-}
-
-int callback_depth() {
-    return depth;
 }
 
 }  // namespace corda

@@ -9,9 +9,6 @@ namespace corda {
 /// Calls `on_progress`, and then check_cancelled(). Throws corda::Error (kInterrupted) if it returns false.
 void report_progress(const OnProgress& on_progress, std::int64_t done, std::int64_t total);
 
-/// Number of callbacks of a scope or of report_progress() that this thread is inside of.
-[[nodiscard]] int callback_depth();
-
 /// Work after which count_work() calls check_cancelled(): about a millisecond.
 constexpr std::uint64_t kUpdatesPerCheck = 10'000;
 

@@ -7,7 +7,7 @@
 
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/film/film_renderer.hpp"
+#include "corda/film/draw.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/render/vector.hpp"
 #include "corda/view/colors.hpp"
@@ -172,51 +172,66 @@ void for_each_cell(const Film& film, const FigureDef& def,
         visit(def.times_s[i], sheet.x_px(i, video.width_px), sheet.y_px(i, video.height_px));
 }
 
-Image draw_sheet(Film& film, const FigureDef& def, std::vector<double>& empty_s) {
+std::vector<double> checked_s(const Film& film, const FigureDef& def) {
+    std::vector<double> times_s;
+    for (const double time_s : def.times_s) times_s.push_back(film.checked_s(time_s));
+    return times_s;
+}
+
+Image draw_sheet(const Film& film, const FigureDef& def, std::vector<double>& empty_s) {
     Image image = render::render_reference(list_captions(film, def));
+    const render::CanvasUse canvas(film.context_def());
     for_each_cell(film, def, [&](double time_s, int x, int y) {
-        const Image cell = film.still(time_s);
-        if (film.shows_nothing()) empty_s.push_back(time_s);
+        if (film::paint(film.look(), film.motion(), film.checked_s(time_s), 0.0, *canvas).is_empty)
+            empty_s.push_back(time_s);
+        const Image& cell = canvas->image();
         for (int row = 0; row < cell.height(); ++row)
             std::copy_n(cell.pixel(0, row), cell.row_bytes(), image.pixel(x, y + row));
     });
     return image;
 }
 
-Image draw(Film& film, const FigureDef& def, std::vector<double>& empty_s) {
+/// Draws a figure as pixels; adds the times of empty pictures.
+Image draw(const Film& film, const FigureDef& def, std::vector<double>& empty_s) {
     check(film, def);
     if (def.columns > 0) return draw_sheet(film, def, empty_s);
-    if (def.shutter != 0.0) {
-        Image image = film.still(def.times_s.front(), def.shutter);
-        if (film.shows_nothing()) empty_s.push_back(def.times_s.front());
-        return image;
-    }
-    Image image = FilmRenderer::draw_poses(film, def.times_s);
-    if (film.shows_nothing()) empty_s.push_back(def.times_s.front());
-    return image;
+    const std::vector<double> times_s = checked_s(film, def);
+    const render::CanvasUse canvas(film.context_def());
+    film::Painted painted;
+    if (def.shutter != 0.0)
+        painted = film::paint(film.look(), film.motion(), times_s.front(), def.shutter, *canvas);
+    else
+        painted = film::paint_poses(film.look(), film.motion(), times_s, *canvas);
+    if (painted.is_empty) empty_s.push_back(times_s.front());
+    return canvas->image();
 }
 
 std::string ending_of(const std::string& path) {
     return std::filesystem::path(path).extension().string();
 }
 
-void draw_lines(Film& film, const FigureDef& def, render::VectorPage& page, std::vector<double>& empty_s) {
+void draw_lines(const Film& film, const FigureDef& def, render::VectorPage& page,
+                std::vector<double>& empty_s) {
+    view::DrawList list;
     const auto add = [&](std::span<const double> times_s, int x, int y) {
-        const view::DrawList list = FilmRenderer::list_poses(film, times_s);
+        film::draw_poses(film.look(), film.motion(), times_s, list);
         if (list.shows_nothing()) empty_s.push_back(times_s.front());
         page.draw(list, x, y);
     };
     if (def.columns > 0) {
         page.draw(list_captions(film, def), 0, 0);
-        for_each_cell(film, def, [&](double time_s, int x, int y) { add({&time_s, 1}, x, y); });
+        for_each_cell(film, def, [&](double time_s, int x, int y) {
+            time_s = film.checked_s(time_s);
+            add({&time_s, 1}, x, y);
+        });
     } else {
-        add(def.times_s, 0, 0);
+        add(checked_s(film, def), 0, 0);
     }
 }
 
 /// The bytes of an SVG or a PDF.
-std::string vector_bytes(const std::string& ending, Film& film, const FigureDef& def, const PngInfo& info,
-                         std::vector<double>& empty_s) {
+std::string vector_bytes(const std::string& ending, const Film& film, const FigureDef& def,
+                         const PngInfo& info, std::vector<double>& empty_s) {
     check(film, def);
     if (def.shutter != 0.0) throw_usage("a shutter and {}: lines cannot be blurred; draw a .png", ending);
     const VideoDef& video = film.scene().video;
@@ -254,7 +269,7 @@ FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns) 
     return def;
 }
 
-Image draw_figure(Film& film, const FigureDef& def) {
+Image draw_figure(const Film& film, const FigureDef& def) {
     std::vector<double> ignored;
     return draw(film, def, ignored);
 }
@@ -264,7 +279,7 @@ bool is_figure_path(const std::string& path) {
     return ending == ".png" || ending == ".svg" || ending == ".pdf";
 }
 
-std::vector<double> write_figure(const std::string& path, Film& film, const FigureDef& def,
+std::vector<double> write_figure(const std::string& path, const Film& film, const FigureDef& def,
                                  const PngInfo& info, const OutputOptions& options) {
     if (!is_figure_path(path))
         throw_usage("'{}': figures are written as .png, .svg or .pdf; give such a name", path);

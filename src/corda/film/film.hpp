@@ -23,16 +23,13 @@ struct FilmDef {
     /// Times in seconds, 0 .. world.duration_s, between frames at which stills or states will be needed.
     /// Other times are possible, but cost another simulation.
     std::vector<double> stills_s;
-    /// Maximum memory for recorded states. A motion that needs more is simulated again when it is read, with
-    /// the same bits.
-    std::size_t motion_budget_bytes = std::size_t{256} << 20;
+    double stills_shutter = 0.0;  ///< exposure of these stills, 0 .. 1; see Film::still()
     /// How to reach OpenGL: "auto", "device", "device:N", "surfaceless" or "default".
     std::string backend = "auto";
     bool require_gpu = false;  ///< refuse OpenGL on the CPU
     StateFields readings;      ///< fields of states in addition to positions
-    /// Called with the number of frames done, in every pass of the simulation, and repeatedly during frames
-    /// that take long. Returning false ends the current call with kInterrupted; the call can be repeated. It
-    /// may use other films, but not this one.
+    /// Called while the film is made, with the number of times that the simulation has reached, in every
+    /// pass. Returning false ends it with kInterrupted.
     OnProgress on_progress;
 };
 
@@ -44,30 +41,36 @@ struct GlInfo {
     std::string platform;  ///< how the context was reached, e.g. "EGL device 0"
 };
 
-/// A scene as pictures: plans a method, simulates the motion once, fits the camera to it, and draws frames in
-/// any order. The same scene gives the same bytes.
+namespace gl {
+struct ContextDef;
+}
+namespace film {
+struct Look;
+struct Motion;
+}  // namespace film
+
+/// A scene as pictures: plans a method, simulates the motion, fits the camera to it, and draws frames in any
+/// order. The same scene gives the same bytes.
 ///
-/// Any thread may use a film, but only one at a time, except for the `const` functions. Several films may be
-/// used at once. A CancelScope of the calling thread can end any call. A film must not be used inside of a
-/// callback of a CancelScope or of progress that it calls: reading or drawing it there throws corda::Error
-/// (kUsage).
+/// All is made by the constructor and never changes: any number of threads may use a film at once, and copies
+/// share it. A CancelScope of the calling thread can end any call. Each thread that draws has an OpenGL
+/// context, which it keeps for all films.
 class Film {
   public:
-    /// Plans a scene with method `auto`, which simulates it. Other scenes are simulated on demand, for
-    /// pictures usually to the end. Throws corda::Error: kInvalidScene if no method can run the scene or
-    /// provide its tensions, or if a field is outside of its declared range, kUsage for an unknown backend or
-    /// a still outside of the scene, kInterrupted if cancelled or if on_progress returns false.
-    explicit Film(const Scene& scene, FilmDef def = {});
-    Film(Film&&) noexcept;
-    Film& operator=(Film&&) noexcept;
-    ~Film();
+    /// Plans and simulates the scene. A motion that exceeds 1 GiB is kept in a temporary file (TMPDIR, or
+    /// /var/tmp). Throws corda::Error: kInvalidScene if no method can run the scene or provide its tensions,
+    /// or if a field is outside of its declared range, kUsage for an unknown backend or a still outside of
+    /// the scene, kIo if a large motion does not fit on the disk, kInterrupted if cancelled or if on_progress
+    /// returns false.
+    explicit Film(const Scene& scene, const FilmDef& def = {});
 
     [[nodiscard]] const Scene& scene() const;
     [[nodiscard]] const System& system() const;
 
     /// Number of frames of the scene's video: those that start before its end.
     [[nodiscard]] std::int64_t frame_count() const;
-    /// The index of the last frame whose time is not after the scene's end; states exist up to it.
+    /// The index of the last frame whose time is not after the scene's end; states exist up to it, unless the
+    /// motion diverges.
     [[nodiscard]] std::int64_t last_frame() const;
     /// The time of frame `k`: exactly k / fps, rounded once.
     [[nodiscard]] double time_s(std::int64_t k) const;
@@ -75,71 +78,76 @@ class Film {
     /// The method and the estimate of its error.
     [[nodiscard]] const Plan& plan() const;
     /// Estimate of the displayed position error in pixels; std::nullopt if the plan has none.
-    [[nodiscard]] std::optional<double> error_estimate_px();
+    [[nodiscard]] std::optional<double> error_estimate_px() const;
     /// The camera with center and height filled in (for one that moves, those without its path); a scene with
-    /// this camera gives the same bytes. Simulates the motion to its end unless the scene gives both and has
-    /// no supports.
-    [[nodiscard]] const CameraDef& camera();
+    /// this camera gives the same bytes.
+    [[nodiscard]] const CameraDef& camera() const;
     /// The same with the center and the height at a time, of a camera that moves too.
-    [[nodiscard]] CameraDef camera_at(double time_s);
-    /// Number of simulations of the motion so far.
-    [[nodiscard]] int simulation_passes() const;
+    [[nodiscard]] CameraDef camera_at(double time_s) const;
 
-    /// Positions at frame `k`, 0 .. last_frame(), or at a time in 0 .. world.duration_s. The reference holds
-    /// until the next call. Throws corda::Error: kUsage out of range, kDiverged if the motion ends before,
-    /// kInterrupted if cancelled or if on_progress returns false.
-    [[nodiscard]] const State& state(std::int64_t k);
-    [[nodiscard]] const State& state_at(double time_s);
-    /// Figures of the state that state() or state_at() returned last.
-    [[nodiscard]] const Figures& figures() const;
-    /// Energy of that state, for which FilmDef::readings must include velocities; that of the weight is 0 at
-    /// the start. Throws corda::Error (kUsage) without velocities.
-    [[nodiscard]] Energy energy();
-    /// Figures of the run up to the last simulated time.
+    /// Positions at frame `k`, 0 .. last_frame(), or at a time in 0 .. world.duration_s. Throws corda::Error:
+    /// kUsage out of range, kDiverged if the motion ends before, kInterrupted if cancelled.
+    [[nodiscard]] State state(std::int64_t k) const;
+    [[nodiscard]] State state_at(double time_s) const;
+    /// Figures of the state at a time. Throws as state_at().
+    [[nodiscard]] Figures figures_at(double time_s) const;
+    /// Energy of a state of this film, for which FilmDef::readings must include velocities; that of the
+    /// weight is 0 at the start. Throws corda::Error (kUsage) without velocities.
+    [[nodiscard]] Energy energy_of(const State& state) const;
+    /// Figures of the whole run, or up to where it diverges.
     [[nodiscard]] const Diagnostics& diagnostics() const;
     /// Seconds spent in stepping.
     [[nodiscard]] double stepping_s() const;
 
     /// Draws frame `k`, 0 .. last_frame(), as in the video, blurred by video.shutter; or the picture at a
     /// time in 0 .. world.duration_s, sharp unless `shutter` (0 .. 1, see VideoDef) is more than 0. RGBA8,
-    /// row 0 on top. States within exposures are recorded if they fit into half of the budget; otherwise
-    /// frames in order of time take one more simulation in total, in any other order up to one each. A
-    /// blurred picture first simulates the whole motion, because exposures are clipped to its end. Calls
-    /// check_cancelled() repeatedly if the picture is large or blurred. Throws as state(), and kNoGl.
-    [[nodiscard]] Image frame(std::int64_t k);
-    [[nodiscard]] Image still(double time_s, double shutter = 0.0);
+    /// row 0 on top. Calls check_cancelled() repeatedly if the picture is large or blurred. Throws as
+    /// state(), and kNoGl.
+    [[nodiscard]] Image frame(std::int64_t k) const;
+    [[nodiscard]] Image still(double time_s, double shutter = 0.0) const;
+    /// True if that picture would show only the ground. Needs no OpenGL. Throws as state().
+    [[nodiscard]] bool is_empty(double time_s, double shutter = 0.0) const;
     /// The body at each pixel of frame `k` without motion blur, row 0 on top: 0 for none, or 1 + its index
     /// (ropes before nets). A pixel shows the last body that covers at least half of it; bars between other
     /// particles, supports and annotations are left out. Needs no OpenGL. Throws as state(), and kUsage for
     /// more than 255 bodies.
-    [[nodiscard]] std::vector<std::uint8_t> mask(std::int64_t k);
+    [[nodiscard]] std::vector<std::uint8_t> mask(std::int64_t k) const;
     /// Positions in m in world coordinates as pixels, y down; the centre of the top left pixel is at (0.5,
-    /// 0.5). A camera that moves is where it is at `time_s`. Throws what camera() throws.
-    [[nodiscard]] std::vector<Vec2> to_pixels(std::span<const Vec2> positions_m, double time_s = 0.0);
-    /// True if the last picture was empty.
-    [[nodiscard]] bool shows_nothing() const;
+    /// 0.5). A camera that moves is where it is at `time_s`.
+    [[nodiscard]] std::vector<Vec2> to_pixels(std::span<const Vec2> positions_m, double time_s = 0.0) const;
     /// Plots, and names of their curves, that are left out of the pictures for lack of room: sentences with a
-    /// remedy. Throws what camera() throws.
-    [[nodiscard]] std::vector<std::string> left_out();
+    /// remedy.
+    [[nodiscard]] std::vector<std::string> left_out() const;
     /// The OpenGL driver. Throws kNoGl.
-    [[nodiscard]] GlInfo gl();
+    [[nodiscard]] GlInfo gl() const;
+
+    /// The same motion in pictures of another size, style or overlay, without a plot and without another
+    /// simulation. `scene` has the bodies and the world of the film's scene. Throws corda::Error (kInternal)
+    /// for another colouring, other arrows, a longer trail or a plot.
+    [[nodiscard]] Film with_look(const Scene& scene) const;
+
+    // The values that a film consists of; for this library's own use.
+    [[nodiscard]] const film::Motion& motion() const;
+    [[nodiscard]] const film::Look& look() const;
+    [[nodiscard]] const gl::ContextDef& context_def() const;
+    /// A time in the form of time_within(). Throws corda::Error (kUsage) if there is no motion at that time.
+    [[nodiscard]] double checked_s(double time_s) const;
 
   private:
-    friend class FilmRenderer;
     struct Impl;
-    explicit Film(std::unique_ptr<Impl> impl);
+    explicit Film(std::shared_ptr<const Impl> impl);
 
-    std::unique_ptr<Impl> impl_;
+    std::shared_ptr<const Impl> impl_;
 };
 
 /// The scene of a film with the methods and the camera that were chosen: it gives the same frames, byte for
-/// byte. Throws what camera() throws.
-[[nodiscard]] Scene frozen_scene(Film& film);
+/// byte.
+[[nodiscard]] Scene frozen_scene(const Film& film);
 
 /// The tables [solver], [[solver.bodies]] and [camera] of frozen_scene(), for pasting into a scene file.
 /// Throws corda::Error (kUsage) if method `relaxation` moves ropes that differ in reach (only code can make
 /// such).
-[[nodiscard]] std::string frozen_toml(Film& film);
+[[nodiscard]] std::string frozen_toml(const Film& film);
 
 /// Draws given positions: from another simulation, or measured ones.
 class Renderer {
@@ -148,19 +156,16 @@ class Renderer {
     /// points. Throws corda::Error: kInvalidScene for a field outside of its declared range, kUsage for an
     /// unknown backend (see FilmDef).
     explicit Renderer(const Scene& scene, const std::string& backend = "auto");
-    Renderer(Renderer&&) noexcept;
-    Renderer& operator=(Renderer&&) noexcept;
-    ~Renderer();
 
     /// The camera with center and height filled in.
     [[nodiscard]] const CameraDef& camera() const;
     /// Draws the particles at these positions in m, in world coordinates, one per particle, ropes before
     /// nets. Throws corda::Error: kUsage for another number of positions or one that is not finite, kNoGl.
-    [[nodiscard]] Image draw(std::span<const Vec2> positions_m);
+    [[nodiscard]] Image draw(std::span<const Vec2> positions_m) const;
 
   private:
     struct Impl;
-    std::unique_ptr<Impl> impl_;
+    std::shared_ptr<const Impl> impl_;
 };
 
 /// Options of render_video().
@@ -222,10 +227,14 @@ class CheckedOutput {
 /// Draws, encodes, verifies and names a video of a film whose scene was checked. Calls `on_progress` as
 /// RenderDef describes. Throws corda::Error: kUsage for a film of another size or rate, kEncoder, kNoGl, kIo,
 /// kDiverged. After an error there is no video; pictures that were written stay.
-Rendered render_video(Film& film, const CheckedOutput& output, const OnProgress& on_progress = {});
+Rendered render_video(const Film& film, const CheckedOutput& output, const OnProgress& on_progress = {});
 
 /// Checks the output, then renders it; the ending of `path` chooses the format.
-Rendered render_video(Film& film, const std::string& path, const RenderDef& def = {});
+Rendered render_video(const Film& film, const std::string& path, const RenderDef& def = {});
+
+/// The files that render_video() would write of a whole film under `name`, in memory: one video, or a picture
+/// per frame. Throws corda::Error as it does.
+[[nodiscard]] std::vector<std::string> video_files(const Film& film, const std::string& name);
 
 /// Poses of a film at several times.
 struct FigureDef {
@@ -247,7 +256,7 @@ struct FigureDef {
 [[nodiscard]] FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns = 0);
 
 /// Throws corda::Error as Film::still(), and kUsage for an invalid definition or poses with too many lines.
-[[nodiscard]] Image draw_figure(Film& film, const FigureDef& def);
+[[nodiscard]] Image draw_figure(const Film& film, const FigureDef& def);
 
 /// True if `path` ends with .png, .svg or .pdf.
 [[nodiscard]] bool is_figure_path(const std::string& path);
@@ -256,7 +265,7 @@ struct FigureDef {
 /// OpenGL, has the size of the pixels at info.pixels_per_inch, and only the title of the texts of `info`.
 /// Returns the times of empty pictures: at most one, except in a contact sheet. Throws corda::Error as
 /// draw_figure(), kIo, and kUsage for another ending.
-std::vector<double> write_figure(const std::string& path, Film& film, const FigureDef& def,
+std::vector<double> write_figure(const std::string& path, const Film& film, const FigureDef& def,
                                  const PngInfo& info = {}, const OutputOptions& options = {});
 
 }  // namespace corda

@@ -1,165 +1,70 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <functional>
-#include <map>
-#include <mutex>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/rational.hpp"
 #include "corda/core/timeline.hpp"
 #include "corda/scene/scene.hpp"
-#include "corda/sim/auto/planner.hpp"
 #include "corda/sim/forces/elastic_forces.hpp"
 #include "corda/sim/recording.hpp"
 #include "corda/sim/simulation.hpp"
-#include "corda/view/scene_view.hpp"
 
 namespace corda::film {
 
-/// Changes of a system that may keep it from diverging, in words.
-[[nodiscard]] std::string divergence_advice(const System& system);
+/// What simulate() records besides what the pictures of the scene show.
+struct RecordDef {
+    std::vector<double> times_s;  ///< between frames, of stills
+    double shutter = 0.0;         ///< exposure of these stills
+    StateFields fields;
+    OnProgress on_progress;  ///< called with the number of times reached, in every pass, and in long ones
+};
 
-/// The states of one run of a system at the times of a timeline, readable in any order. They are simulated on
-/// first use and recorded; states beyond the memory budget are simulated again, with the same bits.
-class Motion : NonCopyable {
-  public:
-    /// A motion that has not started, with one method per body or, if `methods` is empty, those that record()
-    /// will find. `quantity` and `readings`: see sim::Recording. `system` must outlive it. Throws
-    /// corda::Refusal if a method cannot run its body.
-    Motion(const System& system, const WorldDef& world, std::vector<MethodDef> methods, Timeline timeline,
-           std::size_t budget_bytes, std::optional<Quantity> quantity = {}, const StateFields& readings = {});
+/// A scene's motion: the plan, and the states at all times that are drawn. Made by simulate(), and never
+/// changed afterwards.
+struct Motion : NonCopyable {
+    Motion(System of, const WorldDef& in) : system(std::move(of)), world(in) {}
 
-    /// Calls a planner with the recording, in which it records the run that it chooses.
-    Plan record(const std::function<Plan(const Timeline&, sim::Recording&)>& plan);
+    /// True if the run ended before the scene does.
+    [[nodiscard]] bool diverges() const { return recording->size() < timeline->size(); }
+    /// The end: that of the scene, or the last recorded time if the run diverges.
+    [[nodiscard]] double end_s() const;
+    /// One per body, with every default filled in.
+    [[nodiscard]] std::vector<MethodDef> methods() const;
 
-    /// Simulates the motion to its end. A run that diverges ends it early, which is no error. Throws as at(),
-    /// except kDiverged.
-    void run_to_end();
-
-    /// The state at a time of the timeline, or at any other time between 0 and its end. The reference holds
-    /// until the next call. Throws corda::Error: kDiverged if the motion ends before, kInterrupted if
-    /// cancelled.
-    const State& at(double time_s);
-    /// Keeps the states at these increasing times in addition to the recording, whatever the budget is.
-    /// Throws as at().
-    void keep(std::span<const double> times_s);
-    /// Figures of the last state that at() returned.
-    [[nodiscard]] const Figures& figures() const { return figures_; }
+    /// Calls `visit` with the states at increasing times within the scene. Those that are not recorded take
+    /// one more simulation in all, with the same bits. Throws corda::Error: kDiverged if the motion ends
+    /// before, kInterrupted if cancelled.
+    void for_each(std::span<const double> times_s,
+                  const std::function<void(const State&, const Figures&)>& visit) const;
+    /// The state at a time. Throws as for_each().
+    [[nodiscard]] State at(double time_s) const;
 
     /// The energy of a state of this motion with velocities; that of the weight is 0 at the start. Throws
     /// corda::Error (kUsage) without velocities.
-    [[nodiscard]] Energy energy_of(const State& state);
-
-    [[nodiscard]] const Timeline& timeline() const { return timeline_; }
-    [[nodiscard]] const sim::Recording& recording() const { return recording_; }
-    /// One per body, with every default filled in.
-    [[nodiscard]] const std::vector<MethodDef>& methods() const { return methods_; }
-    /// Index of the time that the run advances to next.
-    [[nodiscard]] std::size_t next() const { return next_; }
-    /// Number of simulations that this object has started to step.
-    [[nodiscard]] int passes() const { return passes_; }
-    /// True if the run is known to end before the timeline.
-    [[nodiscard]] bool diverges() const { return diverges_; }
-
-  private:
-    struct Kept {
-        State state;
-        Figures figures;
-    };
-
-    void start();
-    /// Advances to the next time of the timeline; false if the run diverges there.
-    [[nodiscard]] bool step();
-    /// Advances run_, and records the state if it is new.
-    Status advance_to(double time_s, bool is_new);
-    [[noreturn]] void fail_diverged(double time_s) const;
-
-    const System* system_;
-    WorldDef world_;
-    std::vector<MethodDef> methods_;
-    Timeline timeline_;
-    sim::Recording recording_;
-    std::optional<Simulation> run_;  ///< made by the first simulation
-    std::size_t next_ = 0;           ///< index of the time that run_ advances to next
-    int passes_ = 0;
-    bool diverges_ = false;
-    std::map<double, Kept> kept_;  ///< by time
-    State state_;
-    Figures figures_;
-    std::optional<sim::EnergyMeter> meter_;
-    double weight_at_start_j_ = 0.0;
-};
-
-/// A motion and its plan, which several films may show in different looks, and several renderers may read in
-/// different threads.
-class SharedMotion {
-  public:
-    explicit SharedMotion(const Scene& scene);
-
-    /// A call, on this thread, that uses the motion or draws it.
-    class Activity : NonCopyable {
-      public:
-        /// Throws corda::Error (kUsage) inside of a callback of another activity with this motion.
-        explicit Activity(const SharedMotion& motion);
-        ~Activity();
-
-      private:
-        const SharedMotion* motion_;
-        int callback_depth_;
-        const Activity* outer_;
-    };
-
-    /// Exclusive use of the motion, required to read it. Progress of the simulation is reported meanwhile.
-    class Use {
-      public:
-        /// Throws as Activity. `on_progress` must outlive it.
-        Use(SharedMotion& motion, const OnProgress& on_progress);
-
-      private:
-        Activity activity_;
-        std::unique_lock<std::mutex> lock_;
-        CancelScope progress_;
-    };
+    [[nodiscard]] Energy energy_of(const State& state) const;
 
     System system;
-    sim::NamedMethods named;
-    std::optional<Motion> motion;
+    WorldDef world;
     Plan plan;
-
-  private:
-    std::mutex mutex_;
+    double duration_s = 0.0;
+    std::optional<Timeline> timeline;
+    std::optional<sim::Recording> recording;
+    std::optional<sim::EnergyMeter> meter;
+    double weight_at_start_j = 0.0;
 };
 
-/// Records the paths of particles at frame times for trails. A trail has the same points whatever was drawn
-/// before.
-class TrailRecorder {
-  public:
-    /// `trail_s`: length of a trail. A long trail has a point every few frames only.
-    TrailRecorder(std::vector<std::size_t> particles, double trail_s, FrameRate fps);
+/// Plans and simulates a scene that validate() accepts, and records it at the times of frames, stills,
+/// exposures, plots and arrows. A run that diverges ends early. Throws corda::Error: kInvalidScene if no
+/// method can run the scene or provide its tensions, kInterrupted if cancelled or if on_progress returns
+/// false, kIo without room on the disk for a motion that exceeds the memory.
+[[nodiscard]] std::shared_ptr<const Motion> simulate(const Scene& scene, const RecordDef& def);
 
-    /// Reads the motion as far as trails at this time need it. Throws as Motion::at().
-    void read(Motion& motion, double time_s);
-    /// The trails that end at a state, one per particle. Requires read() up to its time.
-    [[nodiscard]] const std::vector<view::Trail>& to(const State& state);
-
-  private:
-    [[nodiscard]] double time_s(std::size_t point) const {
-        return fps_.time_s(static_cast<std::int64_t>(point) * stride_);
-    }
-
-    std::vector<std::size_t> particles_;
-    double trail_s_;
-    FrameRate fps_;
-    std::int64_t stride_;                     ///< frames per point
-    std::vector<view::TrailPoint> recorded_;  ///< per point: all particles, without ages
-    std::size_t points_ = 0;
-    std::vector<view::Trail> trails_;
-};
+/// Changes of a system that may keep it from diverging, in words.
+[[nodiscard]] std::string divergence_advice(const System& system);
 
 }  // namespace corda::film

@@ -224,25 +224,6 @@ std::vector<double> arrow_times_s(const Scene& scene) {
     return times_s;
 }
 
-Timeline recorded_times(const Scene& scene, const System& system, std::vector<double> times_s,
-                        std::size_t budget_bytes) {
-    const VideoDef& video = scene.video;
-    const std::vector<double> arrows_s = arrow_times_s(scene);
-    times_s.insert(times_s.end(), arrows_s.begin(), arrows_s.end());
-    const std::int64_t last_frame = last_frame_of(scene);
-    constexpr std::size_t kMaxNumbersPerParticle = 5;
-    const std::size_t state_bytes = kMaxNumbersPerParticle * sizeof(double) * system.particle_count();
-    const std::size_t most_states = budget_bytes / 2 / state_bytes;
-    const auto subframes = static_cast<std::size_t>((last_frame + 1) * video.subframes);
-    const bool has_room = subframes <= most_states;
-    for (std::int64_t k = 0; video.shutter > 0.0 && has_room && k <= last_frame; ++k) {
-        const double time_s = video.scene_rate().time_s(k);
-        for (int i = 0; i < video.subframes; ++i)
-            times_s.push_back(subframe_s(video, time_s, video.shutter, scene.world.duration_s, i));
-    }
-    return {video.scene_rate(), last_frame, std::move(times_s), video.fps.interval_s()};
-}
-
 void validate(const Scene& scene, std::span<const double> stills_s) {
     validate_frame_rate(scene);
     check_definitions(scene);

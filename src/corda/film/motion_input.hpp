@@ -32,11 +32,6 @@ namespace corda::film {
 /// arrows.
 [[nodiscard]] std::vector<double> arrow_times_s(const Scene& scene);
 
-/// The times to record: those of frames, `times_s`, arrow_times_s(), and those within exposures if they take
-/// at most half of the memory.
-[[nodiscard]] Timeline recorded_times(const Scene& scene, const System& system, std::vector<double> times_s,
-                                      std::size_t budget_bytes);
-
 /// Validates the input of a motion before anything is computed from it, because the reader of scene files has
 /// not checked a scene that is filled in by code. system_of() checks the bodies. Throws corda::Error:
 /// kInvalidScene for a definition of the scene, kUsage for a still outside of the motion.

@@ -318,7 +318,7 @@ std::vector<std::string> modelled_terms(const Scene& scene, const Plan& plan) {
     return terms;
 }
 
-std::optional<std::string> error_estimate_text(Film& film) {
+std::optional<std::string> error_estimate_text(const Film& film) {
     const Plan& plan = film.plan();
     std::optional<double> largest_m;
     std::vector<std::size_t> without_estimate;
@@ -337,7 +337,7 @@ std::optional<std::string> error_estimate_text(Film& film) {
     return text;
 }
 
-Scene frozen_scene(Film& film) {
+Scene frozen_scene(const Film& film) {
     Scene scene = film.scene();
     std::vector<MethodGroup> groups = groups_of(film.plan());
     // [solver] is for the largest group.
@@ -358,7 +358,7 @@ Scene frozen_scene(Film& film) {
     return scene;
 }
 
-std::string frozen_toml(Film& film) {
+std::string frozen_toml(const Film& film) {
     return write_solver_and_camera(frozen_scene(film));
 }
 

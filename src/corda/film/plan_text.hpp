@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
-#include "corda/media/defs.hpp"
 #include "corda/film/film.hpp"
+#include "corda/media/defs.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/defs.hpp"
@@ -59,7 +59,7 @@ struct MethodGroup {
 
 /// The error estimate of all bodies that have one: "0.06 px, 0.0003 m, up to 0.75 s, except net 1";
 /// std::nullopt if none has one, or if predictability ends at the start.
-[[nodiscard]] std::optional<std::string> error_estimate_text(Film& film);
+[[nodiscard]] std::optional<std::string> error_estimate_text(const Film& film);
 
 /// The texts of a picture file: program, scene, times in s, frames unless empty, and provenance
 /// (provenance_text).

@@ -11,10 +11,10 @@
 #include "corda/core/file.hpp"
 #include "corda/core/markup.hpp"
 #include "corda/core/text.hpp"
+#include "corda/film/film.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/media/format/file_kind.hpp"
 #include "corda/media/read/video_comment.hpp"
-#include "corda/film/film.hpp"
 #include "corda/scene/write_scene.hpp"
 
 namespace corda {

@@ -15,14 +15,14 @@
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/workers.hpp"
-#include "corda/media/encode/frame_maker.hpp"
-#include "corda/media/encode/probe.hpp"
-#include "corda/media/write/video_file.hpp"
+#include "corda/film/draw.hpp"
 #include "corda/film/film.hpp"
-#include "corda/film/film_renderer.hpp"
 #include "corda/film/motion_input.hpp"
 #include "corda/film/plan_text.hpp"
 #include "corda/film/provenance.hpp"
+#include "corda/media/encode/frame_maker.hpp"
+#include "corda/media/encode/probe.hpp"
+#include "corda/media/write/video_file.hpp"
 #include "corda/view/colors.hpp"
 
 namespace corda {
@@ -41,7 +41,7 @@ media::PictureInfo picture_info_of(const Scene& scene) {
 }
 
 /// Title, comment and provenance of the file.
-media::VideoMetadata metadata(Film& film, std::int64_t first, std::int64_t end) {
+media::VideoMetadata metadata(const Film& film, std::int64_t first, std::int64_t end) {
     Provenance made = provenance_of(film.scene());
     const std::string title = made.name;
     nlohmann::json comment = {{"corda", version()},
@@ -66,21 +66,22 @@ struct Drawn {
     bool is_empty = false;
 };
 
-/// Draws frames on the thread that made it, ready for a VideoFile.
+/// Draws frames of a film on the thread that made it, ready for a VideoFile.
 class FrameDrawer {
   public:
-    FrameDrawer(Film& film, const media::CheckedVideo& video)
-        : film_(film), renderer_(film), maker_(video.format, video.first, picture_info_of(film.scene())) {}
+    FrameDrawer(const Film& film, const media::Format& format, std::int64_t first)
+        : film_(film), canvas_(film.context_def()), maker_(format, first, picture_info_of(film.scene())) {}
 
     Drawn draw(std::int64_t k) {
         check_cancelled();
-        const Damage damage = renderer_.draw(film_.time_s(k));
-        return {maker_.make(k, renderer_.image(), damage), renderer_.shows_nothing()};
+        const auto [damage, is_empty] =
+            film::paint(film_.look(), film_.motion(), film_.time_s(k), film_.scene().video.shutter, *canvas_);
+        return {maker_.make(k, canvas_->image(), damage), is_empty};
     }
 
   private:
     const Film& film_;
-    FilmRenderer renderer_;
+    render::CanvasUse canvas_;
     media::FrameMaker maker_;
 };
 
@@ -99,14 +100,14 @@ std::int64_t block_length(const VideoDef& video, int jobs) {
 /// Draws the frames of a video on `jobs` threads, each a block of consecutive frames at a time, and calls
 /// `take` on this thread with one after the other, in order. Returns false, without any frame, if the system
 /// starts no thread.
-bool draw_on_threads(Film& film, const media::CheckedVideo& video, int jobs, std::atomic<std::int64_t>& drawn,
-                     const std::function<void(Drawn)>& take) {
+bool draw_on_threads(const Film& film, const media::CheckedVideo& video, int jobs,
+                     std::atomic<std::int64_t>& drawn, const std::function<void(Drawn)>& take) {
     const std::vector<std::int64_t>& frames = video.to_draw;
     const std::int64_t length = block_length(video.def, jobs);
     const std::int64_t blocks = (std::ssize(frames) + length - 1) / length;
     const auto new_maker = [&] {
-        return [&, drawer = std::make_shared<FrameDrawer>(film, video)](std::int64_t number,
-                                                                        const OrderedWorkers<Block>& all) {
+        return [&, drawer = std::make_shared<FrameDrawer>(film, video.format, video.first)](
+                   std::int64_t number, const OrderedWorkers<Block>& all) {
             const CancelScope running([&all] { return !all.is_stopped(); });
             Block block;
             const std::int64_t end = std::min((number + 1) * length, std::ssize(frames));
@@ -125,9 +126,8 @@ bool draw_on_threads(Film& film, const media::CheckedVideo& video, int jobs, std
     return true;
 }
 
-/// Draws the frames of a video and adds them to its file. Counts them in `result`, and the empty ones. Frames
-/// that need a repeated simulation are drawn on this thread, in order.
-void write_frames(Film& film, const media::CheckedVideo& video, const OnProgress& on_progress,
+/// Draws the frames of a video and adds them to its file. Counts them in `result`, and the empty ones.
+void write_frames(const Film& film, const media::CheckedVideo& video, const OnProgress& on_progress,
                   media::VideoFile& file, Rendered& result) {
     const std::int64_t total = media::passes(*video.format.ending) * video.frames();
     std::atomic<std::int64_t> drawn = result.kept_frames;
@@ -140,11 +140,10 @@ void write_frames(Film& film, const media::CheckedVideo& video, const OnProgress
     };
     const auto jobs =
         static_cast<int>(std::min<std::int64_t>(jobs_of(video.def.encoder.jobs), std::ssize(video.to_draw)));
-    const bool can_be_threads = jobs > 1 && FilmRenderer::can_draw_in_any_order(film, video.end);
-    if (can_be_threads && draw_on_threads(film, video, jobs, drawn, take)) return;
+    if (jobs > 1 && draw_on_threads(film, video, jobs, drawn, take)) return;
     std::optional<FrameDrawer> drawer;
     for (const std::int64_t k : video.to_draw) {
-        if (!drawer) drawer.emplace(film, video);
+        if (!drawer) drawer.emplace(film, video.format, video.first);
         take(drawer->draw(k));
         ++drawn;
     }
@@ -165,13 +164,14 @@ void check_ground(const Scene& scene, const media::Format& format) {
 }
 
 /// Counts the pictures that were there, and those of them that are empty.
-void count_kept(Film& film, const media::CheckedVideo& video, Rendered& result) {
+void count_kept(const Film& film, const media::CheckedVideo& video, Rendered& result) {
     result.kept_frames = video.frames() - std::ssize(video.to_draw);
     result.frames = result.kept_frames;
     if (result.kept_frames == 0) return;
     for (std::int64_t k = video.first; k < video.end; ++k) {
         const double time_s = film.time_s(k);
-        if (!std::ranges::binary_search(video.to_draw, k) && FilmRenderer::is_empty(film, time_s))
+        if (!std::ranges::binary_search(video.to_draw, k) &&
+            film.is_empty(time_s, film.scene().video.shutter))
             note_empty(time_s, result);
     }
 }
@@ -215,7 +215,7 @@ CheckedOutput check_render(const Scene& scene, const std::string& path, const Re
     return CheckedOutput(std::move(video));
 }
 
-Rendered render_video(Film& film, const CheckedOutput& output, const OnProgress& on_progress) {
+Rendered render_video(const Film& film, const CheckedOutput& output, const OnProgress& on_progress) {
     const media::CheckedVideo& video = output.video();
     const VideoDef& shown = film.scene().video;
     if (shown.width_px != video.def.width_px || shown.height_px != video.def.height_px ||
@@ -226,9 +226,7 @@ Rendered render_video(Film& film, const CheckedOutput& output, const OnProgress&
             video.path, video.def.width_px, video.def.height_px, video.def.fps.rational().text(),
             shown.width_px, shown.height_px, shown.fps.rational().text());
     }
-    const film::SharedMotion::Activity rendering(FilmRenderer::motion_of(film));
-    static_cast<void>(film.camera());  // may fail, which is to happen before a file is made
-    static_cast<void>(film.gl());
+    static_cast<void>(film.gl());  // may fail, which is to happen before a file is made
     media::VideoMetadata data = metadata(film, video.first, video.end);
     Rendered result;
     result.encoder = video.format.codec->name;
@@ -251,7 +249,7 @@ Rendered render_video(Film& film, const CheckedOutput& output, const OnProgress&
     return result;
 }
 
-std::vector<std::string> video_files(Film& film, FilmRenderer& renderer, const std::string& name) {
+std::vector<std::string> video_files(const Film& film, const std::string& name) {
     const VideoDef& def = film.scene().video;
     const media::CheckedVideo video{.path = name,
                                     .def = def,
@@ -263,11 +261,9 @@ std::vector<std::string> video_files(Film& film, FilmRenderer& renderer, const s
     std::optional<media::TrackWriter> track;
     if (video.format.ending->kind == media::FileKind::kVideo)
         track.emplace(video, metadata(film, 0, video.end), output);
-    media::FrameMaker maker(video.format, 0, picture_info_of(film.scene()));
+    FrameDrawer drawer(film, video.format, 0);
     for (std::int64_t k = 0; k < video.end; ++k) {
-        check_cancelled();
-        const Damage damage = renderer.draw(film.time_s(k));
-        media::ReadyFrame frame = maker.make(k, renderer.image(), damage);
+        media::ReadyFrame frame = drawer.draw(k).frame;
         if (track)
             track->add(std::move(frame));
         else
@@ -278,7 +274,7 @@ std::vector<std::string> video_files(Film& film, FilmRenderer& renderer, const s
     return {output.bytes()};
 }
 
-Rendered render_video(Film& film, const std::string& path, const RenderDef& def) {
+Rendered render_video(const Film& film, const std::string& path, const RenderDef& def) {
     return render_video(film, check_render(film.scene(), path, def), def.on_progress);
 }
 

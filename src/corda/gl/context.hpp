@@ -26,6 +26,8 @@ struct ContextDef {
 
     /// Reads "auto", "device", "device:N", "surfaceless" or "default". Throws corda::Error (kUsage).
     static ContextDef parse(std::string_view text);
+
+    bool operator==(const ContextDef&) const = default;
 };
 
 /// Properties of a context that EGL and OpenGL report.

@@ -10,7 +10,7 @@
 
 namespace corda::golden {
 
-GoldenRecord record_of(Film& film) {
+GoldenRecord record_of(const Film& film) {
     GoldenRecord record{.renderer = film.gl().renderer};
     for (const KeyChange& choice : differences(values_of(frozen_scene(film)), values_of(film.scene())))
         if (choice.now) record.chosen.emplace(choice.key, *choice.now);

@@ -11,7 +11,7 @@
 namespace corda::golden {
 
 /// How a film's pictures are made.
-[[nodiscard]] GoldenRecord record_of(Film& film);
+[[nodiscard]] GoldenRecord record_of(const Film& film);
 
 /// The texts of a golden PNG. `film` is what the picture was drawn from: `still --from` draws it again.
 [[nodiscard]] PngInfo to_png_info(GoldenRecord record, const Film& film, double time_s);

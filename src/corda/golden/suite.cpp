@@ -13,7 +13,7 @@
 #include "corda/core/machine.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/workers.hpp"
-#include "corda/film/film_renderer.hpp"
+#include "corda/film/draw.hpp"
 #include "corda/golden/cases.hpp"
 #include "corda/media/bytes.hpp"
 
@@ -88,16 +88,14 @@ class Runner {
         auto job = std::make_shared<Job>();
         job->scene = &one;
         job->left = one.pictures.size();
+        const Scene scene = load_scene(one.path, one.settings);
         FilmDef def = def_.film;
         def.stills_s = one.scene.golden->at_s;
-        job->film.emplace(load_scene(one.path, one.settings), def);
-        FilmRenderer::keep(*job->film, def.stills_s);
+        def.stills_shutter = scene.video.shutter;
+        job->film.emplace(scene, def);
         job->made = record_of(*job->film);
         const std::size_t count = one.pictures.size();
-        const bool may_split = job->film->scene().video.shutter == 0.0;
-        const std::size_t pieces =
-            may_split ? std::clamp<std::size_t>(count / kMinApart, 1, static_cast<std::size_t>(threads_))
-                      : std::size_t{1};
+        const auto pieces = std::clamp<std::size_t>(count / kMinApart, 1, static_cast<std::size_t>(threads_));
         for (std::size_t i = 0; i < pieces; ++i)
             queue_.push_front([this, job, first = count * i / pieces, end = count * (i + 1) / pieces] {
                 draw(*job, first, end);
@@ -105,15 +103,17 @@ class Runner {
     }
 
     void draw(Job& job, std::size_t first, std::size_t end) {
-        std::optional<FilmRenderer> renderer(std::in_place, *job.film);
+        const render::CanvasUse canvas(job.film->context_def());
         for (std::size_t i = first; i < end; ++i) {
             Checked& picture = job.scene->pictures[i];
             if (!picture.selected) continue;
             const auto start = std::chrono::steady_clock::now();
-            renderer->draw(picture.time_s);
-            const Image& drawn = renderer->image();
+            const double shutter = job.film->scene().video.shutter;
+            const bool is_empty =
+                film::paint(job.film->look(), job.film->motion(), picture.time_s, shutter, *canvas).is_empty;
+            const Image& drawn = canvas->image();
             picture = judged(drawn, job, picture);
-            if (renderer->shows_nothing() || has_one_color(drawn))
+            if (is_empty || has_one_color(drawn))
                 picture.verdict = Verdict::kEmpty;
             else if (def_.update || !def_.new_folder.empty())
                 add_file(job, drawn, picture);
@@ -122,7 +122,6 @@ class Runner {
             if (picture.failed() && drawn_++ < def_.most_drawn) picture.drawn = drawn;
             report_progress(def_.on_progress, ++done_, all_);
         }
-        renderer.reset();
         {
             const std::lock_guard lock(mutex_);
             job.left -= end - first;

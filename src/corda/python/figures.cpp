@@ -5,7 +5,7 @@
 #include <corda/core/direction.hpp>
 #include <corda/core/markup.hpp>
 #include <corda/core/text.hpp>
-#include <corda/film/film_renderer.hpp>
+#include <corda/film/film.hpp>
 #include <corda/film/plan_text.hpp>
 #include <corda/film/tracked_particle.hpp>
 #include <corda/sim/recording.hpp>
@@ -128,20 +128,19 @@ void append_pairs(const std::vector<double>& x, const std::vector<double>& y, st
     for (std::size_t i = 0; i < x.size(); ++i) pairs.insert(pairs.end(), {x[i], y[i]});
 }
 
-Rows read_rows(Film& film) {
+Rows read_rows(const Film& film) {
     Rows rows;
     const System& system = film.system();
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
         check_cancelled();
-        const State* read = nullptr;
+        State state;
         try {
-            read = &film.state(k);
+            state = film.state(k);
         } catch (const Error& error) {
             if (error.code() != ExitCode::kDiverged || k == 0) throw;
             rows.failure = error.what();
             break;
         }
-        const State& state = *read;
         rows.times_s.push_back(state.time_s);
         append_pairs(state.x_m, state.y_m, rows.positions_m);
         append_pairs(state.vx_m_s, state.vy_m_s, rows.velocities_m_s);
@@ -151,9 +150,9 @@ Rows read_rows(Film& film) {
                 rows.strains.push_back(sim::kind_of(Quantity::kStrain).value(system, body, i, state));
             }
         }
-        const Energy energy = film.energy();
+        const Energy energy = film.energy_of(state);
         rows.energies_j.insert(rows.energies_j.end(), {energy.kinetic_j, energy.weight_j, energy.elastic_j});
-        rows.energy_errors.push_back(film.figures().energy_error.value_or(kUnknown));
+        rows.energy_errors.push_back(film.figures_at(state.time_s).energy_error.value_or(kUnknown));
     }
     rows.diagnostics = film.diagnostics();
     return rows;
@@ -166,8 +165,8 @@ py::array_t<double> to_array(const std::vector<double>& numbers, std::size_t fra
     return py::array_t<double>({rows, columns, pairs}, numbers.data());
 }
 
-py::dict rows(PyFilm& film) {
-    const Rows read = film.with_fields(read_rows);
+py::dict rows(const PyFilm& film) {
+    const Rows read = film.with_film(read_rows);
     const std::size_t frames = read.times_s.size();
     py::dict all;
     all["times"] = py::array_t<double>(static_cast<py::ssize_t>(frames), read.times_s.data());
@@ -243,20 +242,15 @@ py::dict plan_facts(const Film& film, const std::optional<std::string>& estimate
     return facts;
 }
 
-py::dict facts(PyFilm& film) {
-    std::optional<std::string> estimate;
-    const int passes = film.with_film([&](Film& shown) {
-        estimate = error_estimate_text(shown);
-        return shown.simulation_passes();
-    });
-    const Film& shown = film.constant();
+py::dict facts(const PyFilm& film) {
+    const Film& shown = film.film();
     const Scene& scene = shown.scene();
     const System& system = shown.system();
     const System named = named_in_files(scene, system);
     const std::vector<std::string> keys = body_keys(named);
     const std::vector<std::string> colors = curve_colors(scene, system.bodies.size());
     const auto tracked = film::tracked_particles(system);
-    py::dict all = plan_facts(shown, estimate);
+    py::dict all = plan_facts(shown, error_estimate_text(shown));
     py::list bodies;
     for (std::size_t b = 0; b < system.bodies.size(); ++b) {
         py::dict body = body_facts(shown, named, b, tracked);
@@ -285,16 +279,15 @@ py::dict facts(PyFilm& film) {
     all["language"] = static_cast<int>(scene.overlay.language);
     const Ground ground = view::look_of(style_in_print(scene)).ground;
     all["is_on_white"] = !shows_on_white(ground.top) && !shows_on_white(ground.bottom);
-    all["simulation_passes"] = passes;
+    all["simulation_passes"] = shown.plan().simulation_passes;
     return all;
 }
 
 /// Writes the poses at some increasing times in one picture; the extension of `path` chooses the format.
 /// Without a width, the picture has the pixels and the look of the film.
-void save_still(PyFilm& film, const std::string& path, const std::vector<double>& times_s,
+void save_still(const PyFilm& film, const std::string& path, const std::vector<double>& times_s,
                 std::optional<double> width_mm, double letter_pt, bool force) {
-    film.with_film([&](Film& shown) {
-        FilmRenderer::keep(shown, times_s);
+    film.with_film([&](const Film& shown) {
         const Scene& scene = shown.scene();
         PngInfo info;
         info.text = {{"Title", printable(scene.name)},
@@ -304,7 +297,7 @@ void save_still(PyFilm& film, const std::string& path, const std::vector<double>
             info.pixels_per_inch = kScreenPpi;
             return write_figure(path, shown, {.times_s = times_s}, info, options).size();
         }
-        Film look = FilmRenderer::another_look(shown, look_in_print(scene, *width_mm, letter_pt));
+        const Film look = shown.with_look(look_in_print(scene, *width_mm, letter_pt));
         info.pixels_per_inch = look.scene().video.width_px * kMmPerInch / *width_mm;
         return write_figure(path, look, {.times_s = times_s}, info, options).size();
     });

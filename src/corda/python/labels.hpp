@@ -24,7 +24,7 @@ struct Label {
     bool is_bytes;
     std::vector<std::int64_t> (*shape)(const Film& film);  ///< of one frame
     /// Appends the numbers of frame `k`, whose state the film has just read.
-    void (*append)(Film& film, std::int64_t k, const State& state, std::string& data);
+    void (*append)(const Film& film, std::int64_t k, const State& state, std::string& data);
 };
 
 /// Null for none.
@@ -32,7 +32,7 @@ struct Label {
 
 /// The arrays of the first `frames` frames. Velocities, tensions and energy need a film whose states have
 /// velocities and tensions. Throws corda::Error as Film::state() and Film::mask(), kInterrupted if cancelled.
-[[nodiscard]] std::vector<Array> read_labels(Film& film, std::span<const Label* const> labels,
+[[nodiscard]] std::vector<Array> read_labels(const Film& film, std::span<const Label* const> labels,
                                              std::int64_t frames);
 
 }  // namespace corda::python

@@ -59,8 +59,8 @@ corda::Image to_image(const py::object& picture) {
     return image;
 }
 
-py::dict plan(PyFilm& film) {
-    return film.with_film([](corda::Film& shown) {
+py::dict plan(const PyFilm& film) {
+    return film.with_film([](const corda::Film& shown) {
         const corda::Plan& chosen = shown.plan();
         const auto estimate_px = shown.error_estimate_px();
         const py::gil_scoped_acquire hold;
@@ -77,8 +77,8 @@ py::dict plan(PyFilm& film) {
     });
 }
 
-py::dict camera(PyFilm& film) {
-    return film.with_film([](corda::Film& shown) {
+py::dict camera(const PyFilm& film) {
+    return film.with_film([](const corda::Film& shown) {
         const corda::CameraDef& def = shown.camera();
         const py::gil_scoped_acquire hold;
         py::dict all;
@@ -89,12 +89,13 @@ py::dict camera(PyFilm& film) {
     });
 }
 
-std::int64_t save(PyFilm& film, const std::string& path, bool force, bool resume, py::object on_progress) {
+std::int64_t save(const PyFilm& film, const std::string& path, bool force, bool resume,
+                  py::object on_progress) {
     Asking asking(std::move(on_progress));
     corda::RenderDef def{.force = force, .resume = resume};
     def.on_progress = [&](std::int64_t done, std::int64_t total) { return asking(done, total); };
-    const corda::Rendered rendered =
-        film.with_film([&](corda::Film& shown) { return corda::render_video(shown, path, def); }, asking);
+    const corda::Rendered rendered = film.with_film(
+        [&](const corda::Film& shown) { return corda::render_video(shown, path, def); }, asking);
     if (!rendered.complete) {
         throw corda::Error(corda::ExitCode::kInterrupted,
                            rendered.frames == 0
@@ -108,7 +109,7 @@ std::int64_t save(PyFilm& film, const std::string& path, bool force, bool resume
 /// with even sides, as render --pad makes them, and the default encoder.
 std::pair<std::string, std::unique_ptr<PyFilm>> for_browser(const PyFilm& film, const std::string& backend,
                                                             bool require_gpu) {
-    corda::Scene scene = film.constant().scene();
+    corda::Scene scene = film.film().scene();
     const bool is_opaque = !scene.style.background || scene.style.background->is_opaque();
     const corda::EncoderDef encoder = scene.video.encoder;
     const bool is_default =
@@ -144,37 +145,38 @@ void add_film(py::module_& module) {
     py::class_<PyFilm> film(module, "Film");
     film.def(py::init([](const std::string& text, const std::string& source, bool is_path,
                          const std::vector<std::string>& settings, const std::string& backend,
-                         bool require_gpu, bool has_fields) {
+                         bool require_gpu) {
             const corda::Scene scene = Asking().run([&] {
                 return is_path ? corda::load_scene(source, settings)
                                : corda::parse_scene(text, source, settings);
             });
-            return std::make_unique<PyFilm>(scene, backend, require_gpu, has_fields);
+            return std::make_unique<PyFilm>(scene, backend, require_gpu);
         }))
-        .def("frame_count", [](const PyFilm& film) { return film.constant().frame_count(); })
+        .def("frame_count", [](const PyFilm& film) { return film.film().frame_count(); })
         .def("size",
              [](const PyFilm& film) {
-                 const corda::VideoDef& video = film.constant().scene().video;
+                 const corda::VideoDef& video = film.film().scene().video;
                  return std::pair(video.width_px, video.height_px);
              })
         .def("fps",
              [](const PyFilm& film) {
-                 const corda::Rational fps = film.constant().scene().video.fps.rational();
+                 const corda::Rational fps = film.film().scene().video.fps.rational();
                  return std::pair(fps.num, fps.den);
              })
         .def("frame",
-             [](PyFilm& film, std::int64_t k) {
-                 return to_array(film.with_film([k](Film& shown) { return shown.frame(k); }));
+             [](const PyFilm& film, std::int64_t k) {
+                 return to_array(film.with_film([k](const Film& shown) { return shown.frame(k); }));
              })
         .def("still",
-             [](PyFilm& film, double time_s, double shutter) {
-                 return to_array(film.with_film([=](Film& shown) { return shown.still(time_s, shutter); }));
+             [](const PyFilm& film, double time_s, double shutter) {
+                 return to_array(
+                     film.with_film([=](const Film& shown) { return shown.still(time_s, shutter); }));
              })
         .def("for_browser", &for_browser)
-        .def("positions", [](PyFilm& film) { return corda::python::label(film, "positions", false); })
-        .def("velocities", [](PyFilm& film) { return corda::python::label(film, "velocities", true); })
-        .def("tensions", [](PyFilm& film) { return corda::python::label(film, "tensions", true); })
-        .def("energy", [](PyFilm& film) { return corda::python::label(film, "energy", true); })
+        .def("positions", [](const PyFilm& film) { return corda::python::label(film, "positions"); })
+        .def("velocities", [](const PyFilm& film) { return corda::python::label(film, "velocities"); })
+        .def("tensions", [](const PyFilm& film) { return corda::python::label(film, "tensions"); })
+        .def("energy", [](const PyFilm& film) { return corda::python::label(film, "energy"); })
         .def("times", &corda::python::times)
         .def("mask", &corda::python::mask)
         .def("to_pixels", &corda::python::to_pixels)

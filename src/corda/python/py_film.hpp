@@ -5,15 +5,11 @@
 
 #include <corda/film/film.hpp>
 
-#include <unistd.h>
-
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <exception>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <utility>
@@ -36,20 +32,13 @@ class Calls {
       public:
         Scope() {
             if (has_ended()) never_return();
-            {
-                const std::lock_guard lock(mutex_);
-                ++count_;
-            }
+            ++count_;
             state_ = PyEval_SaveThread();
         }
         ~Scope() {
             while (has_given_up_ && has_ended()) sleep_long();
             PyEval_RestoreThread(state_);
-            {
-                const std::lock_guard lock(mutex_);
-                --count_;
-            }
-            ended_.notify_all();
+            --count_;
             if (has_ended()) never_return();
         }
 
@@ -62,19 +51,17 @@ class Calls {
 
     static void begin_end() {
         constexpr std::chrono::seconds kPatience{5};  // an encoder that hangs must not keep the process alive
+        constexpr std::chrono::milliseconds kPause{1};
         ending_thread_ = std::this_thread::get_id();
         is_ending_ = true;
         const py::gil_scoped_release release;
-        std::unique_lock lock(mutex_);
-        has_given_up_ = !ended_.wait_for(lock, kPatience, [] { return count_ <= 0; });
+        const auto end = std::chrono::steady_clock::now() + kPatience;
+        while (count_ > 0 && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(kPause);
+        has_given_up_ = count_ > 0;
     }
 
     /// To be called in a forked child, where the calls of the parent's other threads do not exist.
-    static void forget() {
-        new (&mutex_) std::mutex;
-        new (&ended_) std::condition_variable;
-        count_ = 0;
-    }
+    static void forget() { count_ = 0; }
 
   private:
     static void sleep_long() { std::this_thread::sleep_for(std::chrono::hours(1)); }
@@ -85,10 +72,7 @@ class Calls {
         while (true) sleep_long();
     }
 
-    // The first two are never destroyed: blocked threads outlive the static objects.
-    inline static std::mutex& mutex_ = *new std::mutex;
-    inline static std::condition_variable& ended_ = *new std::condition_variable;
-    inline static int count_ = 0;
+    inline static std::atomic<int> count_ = 0;
     inline static std::atomic<bool> is_ending_ = false;
     /// True if a call did not end in time, so that the interpreter ends without it.
     inline static std::atomic<bool> has_given_up_ = false;
@@ -165,107 +149,35 @@ class Asking {
     std::exception_ptr raised_;
 };
 
-/// A film that any thread of Python may use; calls of several threads wait for each other.
+/// A film whose states have all fields that Python's properties show.
 class PyFilm : NonCopyable {
   public:
-    /// `has_fields`: its states have velocities and tensions from the start, so that with_fields() needs no
-    /// other film.
-    PyFilm(const Scene& scene, const std::string& backend, bool require_gpu, bool has_fields = false)
-        : has_fields_(has_fields) {
-        FilmDef def{.backend = backend, .require_gpu = require_gpu};
-        if (has_fields) def.readings = kFields;
-        Asking().run([&] { film_ = std::make_unique<Film>(scene, def); });
-    }
-    ~PyFilm() {
-        const Calls::Scope call;
-        const std::unique_lock lock(mutex_, std::try_to_lock);
-        // Leaks a film that a thread which never returns is using.
-        if (!lock.owns_lock() || is_cut_off()) leak();
-        with_fields_.reset();
-        film_.reset();
-    }
+    PyFilm(const Scene& scene, const std::string& backend, bool require_gpu)
+        : film_(Asking().run([&] {
+              return Film(scene,
+                          {.backend = backend,
+                           .require_gpu = require_gpu,
+                           .readings = {.velocities = true, .tensions = true, .unknown_tensions = true}});
+          })) {}
 
-    /// For `const` functions, which several threads may call at once.
-    [[nodiscard]] const Film& constant() const { return *film_; }
+    [[nodiscard]] const Film& film() const { return film_; }
 
-    /// Calls `work` with the film; Python can cancel it. Throws Error (kUsage) inside of a callback of
-    /// another call.
+    /// Calls `work` with the film and without the interpreter's lock; Python can cancel it.
     template <class Work>
-    auto with_film(const Work& work) {
+    auto with_film(const Work& work) const {
         Asking asking;
         return with_film(work, asking);
     }
 
     template <class Work>
-    auto with_film(const Work& work, Asking& asking) {
-        if (is_cut_off()) {
-            throw Error(ExitCode::kUsage,
-                        "the parent process was using this film when it forked, so its state is "
-                        "unfinished here; make another Film, or start processes by spawn");
-        }
-        if (thread_ == std::this_thread::get_id()) {
-            throw Error(ExitCode::kUsage,
-                        "on_progress used the film whose progress it reports; "
-                        "draw and read the film after the call that reports progress, or make another Film");
-        }
-        auto result = asking.run([&] {
-            const std::lock_guard lock(mutex_);
-            const Use use(*this);
-            return work(*film_);
-        });
+    auto with_film(const Work& work, Asking& asking) const {
+        auto result = asking.run([&] { return work(film_); });
         asking.raise();
         return result;
     }
 
-    /// As with_film(), with a film of the same motion whose states have velocities and tensions. The first
-    /// call simulates the motion once more, unless the film has them.
-    template <class Work>
-    auto with_fields(const Work& work) {
-        return with_film([&](Film& film) {
-            if (has_fields_) return work(film);
-            if (!with_fields_)
-                with_fields_ = std::make_unique<Film>(frozen_scene(film), FilmDef{.readings = kFields});
-            return work(*with_fields_);
-        });
-    }
-
   private:
-    static constexpr StateFields kFields{.velocities = true, .tensions = true, .unknown_tensions = true};
-
-    void leak() {
-        static_cast<void>(film_.release());
-        static_cast<void>(with_fields_.release());
-    }
-
-    /// Marks the film as used by this thread.
-    class Use : NonCopyable {
-      public:
-        explicit Use(PyFilm& film) : film_(&film) {
-            film.process_ = getpid();
-            film.thread_ = std::this_thread::get_id();
-        }
-        ~Use() {
-            film_->thread_ = std::thread::id();
-            film_->process_ = 0;
-        }
-
-      private:
-        PyFilm* film_;
-    };
-
-    /// True in a process that was forked while a thread of its parent used the film: the child lacks that
-    /// thread, so the work never ends and the lock stays taken.
-    [[nodiscard]] bool is_cut_off() const {
-        const pid_t process = process_;
-        return process != 0 && process != getpid();
-    }
-
-    std::mutex mutex_;
-    std::atomic<pid_t> process_ = 0;         ///< the process that is using the film; 0: none
-    std::atomic<std::thread::id> thread_{};  ///< the thread that is using the film
-    std::unique_ptr<Film> film_;
-    bool has_fields_;
-    std::unique_ptr<Film> with_fields_;
+    Film film_;
 };
 
 /// Hands the numbers of an array to numpy, which frees them.
@@ -281,12 +193,12 @@ py::array_t<Number> to_numpy(Array array) {
 
 // Arrays of a film's frames: see the properties of the same names in corda/__init__.py.
 
-/// A label of float64 (see labels.hpp). `needs_fields`: it needs velocities or tensions.
-[[nodiscard]] py::array_t<double> label(PyFilm& film, const char* name, bool needs_fields);
+/// A label of float64 (see labels.hpp).
+[[nodiscard]] py::array_t<double> label(const PyFilm& film, const char* name);
 [[nodiscard]] py::array_t<double> times(const PyFilm& film);
-[[nodiscard]] py::array_t<std::uint8_t> mask(PyFilm& film, std::int64_t k);
+[[nodiscard]] py::array_t<std::uint8_t> mask(const PyFilm& film, std::int64_t k);
 using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
-[[nodiscard]] py::array_t<double> to_pixels(PyFilm& film, const Points& points_m);
+[[nodiscard]] py::array_t<double> to_pixels(const PyFilm& film, const Points& points_m);
 
 /// A message as Python's text. It holds names of files as they are, in any encoding.
 [[nodiscard]] inline py::str text_of(const char* message) {

@@ -1,14 +1,11 @@
 // The films of the samples of a sweep, and what its file is checked against: for corda/sweep.py.
-#include <corda/media/format/format.hpp>
-#include <corda/film/film_renderer.hpp>
 #include <corda/film/plan_text.hpp>
 #include <corda/film/tracked_particle.hpp>
+#include <corda/media/format/format.hpp>
 #include <corda/scene/document.hpp>
 #include <corda/scene/schema.hpp>
 
 #include <pybind11/stl.h>
-
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,57 +22,31 @@
 namespace corda::python {
 namespace {
 
-/// Draws films on one thread, and keeps its OpenGL canvas between them.
-class PyPainter : NonCopyable {
-  public:
-    PyPainter() = default;
-    ~PyPainter() {
-        const Calls::Scope call;
-        canvas_.reset();
-    }
+/// The files that rendering the film to `name` makes: a video, or a picture per frame.
+py::list files(const PyFilm& film, const std::string& name) {
+    const auto made = film.with_film([&](const Film& shown) { return video_files(shown, name); });
+    py::list all;
+    for (const std::string& file : made) all.append(py::bytes(file));
+    return all;
+}
 
-    /// The files that rendering the film to `name` makes: a video, or a picture per frame.
-    py::list files(PyFilm& film, const std::string& name) {
-        const auto made = film.with_film([&](Film& shown) {
-            FilmRenderer renderer(shown, &canvas());
-            return video_files(shown, renderer, name);
-        });
-        py::list all;
-        for (const std::string& file : made) all.append(py::bytes(file));
-        return all;
-    }
-
-    /// All frames: uint8 (frames, height, width, 4).
-    py::array_t<std::uint8_t> frames(PyFilm& film) {
-        const VideoDef& video = film.constant().scene().video;
-        const std::int64_t count = film.constant().frame_count();
-        py::array_t<std::uint8_t> all(
-            {count, std::int64_t{video.height_px}, std::int64_t{video.width_px}, std::int64_t{4}});
-        std::uint8_t* to = all.mutable_data();
-        film.with_film([&](Film& shown) {
-            FilmRenderer renderer(shown, &canvas());
-            for (std::int64_t k = 0; k < count; ++k) {
-                check_cancelled();
-                renderer.draw(shown.time_s(k));
-                const Image& image = renderer.image();
-                to = std::copy_n(image.data(), image.size_bytes(), to);
-            }
-            return true;
-        });
-        return all;
-    }
-
-  private:
-    film::OwnedCanvas& canvas() {
-        if (process_ != getpid())
-            static_cast<void>(canvas_.release());  // the parent's, which no child can use
-        process_ = getpid();
-        return canvas_;
-    }
-
-    film::OwnedCanvas canvas_;
-    pid_t process_ = getpid();
-};
+/// All frames: uint8 (frames, height, width, 4).
+py::array_t<std::uint8_t> frames(const PyFilm& film) {
+    const VideoDef& video = film.film().scene().video;
+    const std::int64_t count = film.film().frame_count();
+    py::array_t<std::uint8_t> all(
+        {count, std::int64_t{video.height_px}, std::int64_t{video.width_px}, std::int64_t{4}});
+    std::uint8_t* to = all.mutable_data();
+    film.with_film([&](const Film& shown) {
+        for (std::int64_t k = 0; k < count; ++k) {
+            check_cancelled();
+            const Image image = shown.frame(k);
+            to = std::copy_n(image.data(), image.size_bytes(), to);
+        }
+        return true;
+    });
+    return all;
+}
 
 /// A scene with settings, which messages name with "vary".
 Scene sample_scene(const std::string& text, const std::string& source,
@@ -83,19 +54,19 @@ Scene sample_scene(const std::string& text, const std::string& source,
     return Asking().run([&] { return parse_scene(text, source, {}, {"vary", settings}); });
 }
 
-/// The film of a scene with settings; its states have all fields.
+/// The film of a scene with settings.
 std::unique_ptr<PyFilm> sample_film(const std::string& text, const std::string& source,
                                     const std::vector<std::string>& settings, const std::string& backend,
                                     bool require_gpu) {
-    return std::make_unique<PyFilm>(sample_scene(text, source, settings), backend, require_gpu, true);
+    return std::make_unique<PyFilm>(sample_scene(text, source, settings), backend, require_gpu);
 }
 
 /// Arrays of all frames by the names of labels.
-py::dict labels(PyFilm& film, const std::vector<std::string>& names) {
+py::dict labels(const PyFilm& film, const std::vector<std::string>& names) {
     std::vector<const Label*> labels;
     for (const std::string& name : names) labels.push_back(find_label(name));
     auto read =
-        film.with_fields([&](Film& shown) { return read_labels(shown, labels, shown.frame_count()); });
+        film.with_film([&](const Film& shown) { return read_labels(shown, labels, shown.frame_count()); });
     py::dict arrays;
     for (Array& array : read) {
         const py::str name(array.name);
@@ -109,15 +80,13 @@ py::dict labels(PyFilm& film, const std::vector<std::string>& names) {
 
 /// Facts of a whole motion: its method, its largest strain and energy error, and the particle whose swing
 /// about `pin` is measured.
-py::dict sample_facts(PyFilm& film) {
-    const Figures largest = film.with_fields([](Film& shown) {
-        static_cast<void>(shown.camera());
-        static_cast<void>(shown.state(shown.last_frame()));
-        return shown.diagnostics().largest;
-    });
-    const auto tracked = film::tracked_particles(film.constant().system());
+py::dict sample_facts(const PyFilm& film) {
+    const Film& shown = film.film();
+    static_cast<void>(shown.state(shown.last_frame()));  // a motion that diverges has no facts
+    const Figures& largest = shown.diagnostics().largest;
+    const auto tracked = film::tracked_particles(shown.system());
     py::dict facts;
-    facts["method"] = method_names(film.constant().plan());
+    facts["method"] = method_names(film.film().plan());
     facts["strain_max"] = largest.strain;
     facts["energy_error"] = largest.energy_error;
     facts["particle"] = tracked.empty() ? py::object(py::none()) : py::cast(tracked.front().particle);
@@ -140,8 +109,9 @@ py::str misfit(const std::string& text, const std::string& source, const std::st
 }
 
 /// The poses at some times in one picture: uint8 (height, width, 4).
-py::array_t<std::uint8_t> poses(PyFilm& film, const std::vector<double>& times_s) {
-    const Image image = film.with_film([&](Film& shown) { return FilmRenderer::draw_poses(shown, times_s); });
+py::array_t<std::uint8_t> poses(const PyFilm& film, const std::vector<double>& times_s) {
+    const Image image =
+        film.with_film([&](const Film& shown) { return draw_figure(shown, {.times_s = times_s}); });
     return py::array_t<std::uint8_t>({image.height(), image.width(), 4}, image.data());
 }
 
@@ -185,10 +155,8 @@ py::object swing_of(const std::string& text, const std::string& source,
 }  // namespace
 
 void add_sweep(py::module_& module) {
-    py::class_<PyPainter>(module, "Painter")
-        .def(py::init<>())
-        .def("files", &PyPainter::files)
-        .def("frames", &PyPainter::frames);
+    module.def("files", &files);
+    module.def("frames", &frames);
     module.def("sample_film", &sample_film);
     module.def("sample_facts", &sample_facts);
     module.def("labels", &labels);

@@ -15,9 +15,9 @@
 #include "corda/core/cancel.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/media/bytes.hpp"
 #include "corda/film/plan_text.hpp"
 #include "corda/film/tracked_particle.hpp"
+#include "corda/media/bytes.hpp"
 #include "corda/scene/document.hpp"
 #include "corda/scene/read_file.hpp"
 #include "embedded_page.hpp"
@@ -68,7 +68,7 @@ Json json_of(const SceneNumber& number, const NumberChanges& changes) {
             {"line", number.line}};
 }
 
-std::vector<std::string> plan_lines(Film& film) {
+std::vector<std::string> plan_lines(const Film& film) {
     std::vector<std::string> lines{system_text(film.system()),
                                    "method: " + plan_text(film.system(), film.plan())};
     if (const auto estimate = error_estimate_text(film)) lines.push_back("error estimate " + *estimate);
@@ -92,14 +92,7 @@ std::int64_t number_in(const Request& request, std::string_view name) {
 
 }  // namespace
 
-/// A film, its renderer, and the OpenGL canvas that the next one takes over.
-struct Watch::Shown {
-    film::OwnedCanvas canvas;
-    std::optional<Film> film;
-    std::optional<FilmRenderer> renderer;
-};
-
-Watch::Watch(WatchDef def) : def_(std::move(def)), shown_(std::make_unique<Shown>()) {
+Watch::Watch(WatchDef def) : def_(std::move(def)) {
     thread_ = std::jthread([this] { work(); });
 }
 
@@ -161,7 +154,7 @@ void Watch::work() {
             fail(error.what());
         }
     }
-    shown_.reset();  // on the thread of its OpenGL context
+    shown_.reset();
 }
 
 void Watch::forget_film() {
@@ -217,14 +210,11 @@ void Watch::load() {
     FilmDef def = def_.film;
     def.readings.velocities = true;
     def.on_progress = progress();
-    Film film(scene, std::move(def));
-    static_cast<void>(
-        film.state(film.frame_count() - 1));  // simulates the motion, so that its errors come now
-    forget_film();                            // should the next renderer fail, there is none
-    shown_->renderer.reset();
-    shown_->film.emplace(std::move(film));
-    shown_->renderer.emplace(*shown_->film, &shown_->canvas);
-    Film& shown = *shown_->film;
+    const Film shown(scene, def);
+    static_cast<void>(shown.state(shown.frame_count() - 1));  // a motion that diverges is an error
+    static_cast<void>(shown.gl());                            // so is a driver that cannot draw it
+    forget_film();
+    shown_ = shown;
     const VideoDef& video = shown.scene().video;
     const Rational fps = video.fps.rational();
     publish({{"name", shown.scene().name},
@@ -266,8 +256,7 @@ void Watch::fail(const std::string& message) {
 void Watch::draw(std::int64_t k) {
     Picture picture;
     try {
-        shown_->renderer->draw(shown_->film->time_s(k));
-        picture.png = media::png_bytes(shown_->renderer->image(), {});
+        picture.png = media::png_bytes(shown_->frame(k), {});
     } catch (const Error& error) {
         if (is_interruption(error.code())) throw;
         picture.error = error.what();
@@ -277,7 +266,7 @@ void Watch::draw(std::int64_t k) {
 
 void Watch::read_curves() {
     constexpr std::int64_t kMaxPoints = 1200;
-    Film& film = *shown_->film;
+    const Film& film = *shown_;
     const auto tracked = film::tracked_particles(film.system());
     const std::int64_t stride = 1 + (film.frame_count() - 1) / kMaxPoints;
     Json curves = {{"t", Json::array()},
@@ -286,12 +275,12 @@ void Watch::read_curves() {
                    {"potential_j", Json::array()}};
     for (std::int64_t k = 0; k < film.frame_count(); k += stride) {
         check_cancelled();
-        const State& state = film.state(k);
+        const State state = film.state(k);
         curves["t"].push_back(film.time_s(k));
         if (!tracked.empty() && tracked.front().pin)
             curves["angle_deg"].push_back(film::turning_of(tracked.front(), state, nullptr).x * 180.0 /
                                           std::numbers::pi);
-        const Energy energy = film.energy();
+        const Energy energy = film.energy_of(state);
         curves["kinetic_j"].push_back(energy.kinetic_j);
         curves["potential_j"].push_back(energy.potential_j());
     }

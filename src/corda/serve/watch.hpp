@@ -13,7 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "corda/film/film_renderer.hpp"
+#include "corda/film/film.hpp"
 #include "corda/serve/scene_numbers.hpp"
 #include "corda/serve/server.hpp"
 
@@ -55,7 +55,6 @@ class Watch : NonCopyable {
 
   private:
     using Json = nlohmann::json;
-    struct Shown;
     struct Picture {
         std::string png;
         std::string error;  ///< in its place
@@ -85,7 +84,7 @@ class Watch : NonCopyable {
     [[nodiscard]] Response write_file();
 
     WatchDef def_;
-    std::unique_ptr<Shown> shown_;  ///< used by the thread alone
+    std::optional<Film> shown_;  ///< used by the thread alone
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;

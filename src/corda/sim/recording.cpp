@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <span>
 
 #include "corda/sim/defs.hpp"
 #include "corda/sim/simulation.hpp"
@@ -73,8 +74,8 @@ double Histogram::size_exceeded_by(double share) const {
     return 0.0;
 }
 
-Recording::Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes,
-                     std::size_t bar_count, std::optional<Quantity> quantity, const StateFields& fields)
+Recording::Recording(std::size_t particle_count, std::size_t state_count, std::size_t bar_count,
+                     std::optional<Quantity> quantity, const StateFields& fields)
     : particle_count_(particle_count),
       quantity_(quantity),
       fields_(quantity ? fields.with(kind_of(*quantity).fields) : fields),
@@ -85,21 +86,19 @@ Recording::Recording(std::size_t particle_count, std::size_t state_count, std::s
               {&State::tension_n, fields_.tensions ? bar_count : 0, true}}},
       state_size_(std::accumulate(parts_.begin(), parts_.end(), std::size_t{1},
                                   [](std::size_t sum, const Part& part) { return sum + part.count; })),
-      most_states_(std::min(state_count, budget_bytes / (state_size_ * sizeof(double) + sizeof(Figures)))) {
+      most_states_(state_count),
+      values_(state_count * state_size_) {
     particle_bounds_.resize(particle_count);
-    values_.reserve(most_states_ * state_size_);
-    figures_.reserve(most_states_);
+    row_.reserve(state_size_);
+    figures_.reserve(state_count);
     energy_change_j_.reserve(state_count);
 }
 
 Recording Recording::for_part(std::size_t particle_count, std::size_t bar_count) const {
-    Recording part(particle_count, 0, 0, bar_count, quantity_, fields_);
-    part.most_states_ = most_states_;
-    return part;
+    return {particle_count, most_states_, bar_count, quantity_, fields_};
 }
 
 void Recording::clear() {
-    values_.clear();
     figures_.clear();
     energy_change_j_.clear();
     energy_scale_j_ = 0.0;
@@ -127,13 +126,13 @@ Status Recording::advance(Simulation& run, const Timeline& timeline, const std::
     diagnostics_ = run.diagnostics();
     energy_change_j_.push_back(run.energy_change_j());
     energy_scale_j_ = run.energy_scale_j();
-    if (size() > most_states_) return status;
-    figures_.push_back(run.figures());
-    values_.push_back(state.time_s);
+    row_.assign(1, state.time_s);
     for (const Part& part : parts_) {
         const auto first = (state.*part.array).begin();
-        values_.insert(values_.end(), first, first + static_cast<std::ptrdiff_t>(part.count));
+        row_.insert(row_.end(), first, first + static_cast<std::ptrdiff_t>(part.count));
     }
+    values_.write(figures_.size() * state_size_, row_);
+    figures_.push_back(run.figures());
     return status;
 }
 
@@ -148,30 +147,28 @@ void Recording::add_body(const Recording& body, std::size_t first_particle, std:
     if (bodies_++ == 0) {
         energy_change_j_.assign(body.size(), 0.0);
         figures_.assign(body.figures_.size(), Figures{0.0, std::nullopt, Loads{}});
-        values_.resize(body.figures_.size() * state_size_);
         diagnostics_.largest.loads = Loads{};
     }
     energy_change_j_.resize(std::min(size(), body.size()));
     figures_.resize(std::min(figures_.size(), body.figures_.size()));
-    values_.resize(figures_.size() * state_size_);
     bounds_.include(body.bounds_);
     histogram_.add(body.histogram_);
     std::copy(body.particle_bounds_.begin(), body.particle_bounds_.end(),
               particle_bounds_.begin() + static_cast<std::ptrdiff_t>(first_particle));
     wall_s_ += body.wall_s_;
     add_figures(body);
-    for (std::size_t i = 0; i < figures_.size(); ++i) {
-        const double* const from = &body.values_[i * body.state_size_];
-        double* const to = &values_[i * state_size_];
-        *to = *from;
-        std::size_t from_at = 1;
-        std::size_t to_at = 1;
+    for (std::size_t i = 0; i < size(); ++i) {
+        row_.resize(body.state_size_);
+        body.values_.read(i * body.state_size_, row_);
+        std::span<const double> from = row_;
+        std::size_t to = i * state_size_;
+        values_.write(to++, from.first(1));
+        from = from.subspan(1);
         for (std::size_t p = 0; p < parts_.size(); ++p) {
             const std::size_t count = body.parts_[p].count;
-            std::copy_n(from + from_at, count,
-                        to + to_at + (parts_[p].is_of_bars ? first_bar : first_particle));
-            from_at += count;
-            to_at += parts_[p].count;
+            values_.write(to + (parts_[p].is_of_bars ? first_bar : first_particle), from.first(count));
+            from = from.subspan(count);
+            to += parts_[p].count;
         }
     }
 }
@@ -191,7 +188,6 @@ void Recording::add_figures(const Recording& body) {
         energy_change_j_[i] += body.energy_change_j_[i];
         const auto error = energy_error(energy_change_j_[i], energy_scale_j_);
         if (error) largest.energy_error = std::max(largest.energy_error.value_or(0.0), *error);
-        if (!holds(i)) continue;
         Figures& figures = figures_[i];
         figures.strain = std::max(figures.strain, body.figures_[i].strain);
         figures.loads = loads_of_both(figures.loads, body.figures_[i].loads);
@@ -201,12 +197,12 @@ void Recording::add_figures(const Recording& body) {
 }
 
 void Recording::read(std::size_t i, State& state) const {
-    auto values = values_.begin() + static_cast<std::ptrdiff_t>(i * state_size_);
-    state.time_s = *values++;
+    std::size_t at = i * state_size_;
+    values_.read(at++, {&state.time_s, 1});
     for (const Part& part : parts_) {
-        const auto end = values + static_cast<std::ptrdiff_t>(part.count);
-        (state.*part.array).assign(values, end);
-        values = end;
+        (state.*part.array).resize(part.count);
+        values_.read(at, state.*part.array);
+        at += part.count;
     }
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "corda/core/spool.hpp"
 #include "corda/core/timeline.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/sim/system.hpp"
@@ -44,15 +45,14 @@ class Histogram {
     std::vector<std::uint64_t> counts_;
 };
 
-/// Recorded states of one run at the times of a timeline, in order, up to a memory budget. Beyond the budget
-/// only the bounds and the largest figures are kept.
+/// Recorded states of one run at the times of a timeline, in order, with bounds and largest figures. Those
+/// that take much memory are in a temporary file.
 class Recording {
   public:
-    /// `state_count`: number of times of the timeline. `budget_bytes`: memory limit for states. `quantity`:
-    /// collect its distribution; states then also have the fields that it needs.
-    Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes,
-              std::size_t bar_count = 0, std::optional<Quantity> quantity = {},
-              const StateFields& fields = {});
+    /// `state_count`: the most states. `quantity`: collect its distribution; states then also have the fields
+    /// that it needs. Throws as Spool.
+    Recording(std::size_t particle_count, std::size_t state_count, std::size_t bar_count = 0,
+              std::optional<Quantity> quantity = {}, const StateFields& fields = {});
 
     /// An empty recording of some of the particles and bars with room for as many states.
     [[nodiscard]] Recording for_part(std::size_t particle_count, std::size_t bar_count = 0) const;
@@ -68,11 +68,9 @@ class Recording {
 
     /// Number of states added.
     [[nodiscard]] std::size_t size() const { return energy_change_j_.size(); }
-    /// True if state `i` was added and is kept.
-    [[nodiscard]] bool holds(std::size_t i) const { return i < figures_.size(); }
-    /// Writes state `i`, which must be held, to `state`.
+    /// Writes state `i`, i < size(), to `state`.
     void read(std::size_t i, State& state) const;
-    /// Figures of state `i`, which must be held.
+    /// Figures of state `i`, i < size().
     [[nodiscard]] const Figures& figures(std::size_t i) const { return figures_[i]; }
 
     /// Bounds of all states added at frame times: stills between frames do not move the camera.
@@ -107,9 +105,10 @@ class Recording {
     std::array<Part, 5> parts_;
     std::size_t state_size_;
     std::size_t most_states_;
-    std::vector<double> values_;  ///< per state: time, then the parts
+    Spool values_;             ///< per state: time, then the parts
+    std::vector<double> row_;  ///< one state of them
     std::vector<Figures> figures_;
-    std::vector<double> energy_change_j_;  ///< of all states added; NaN if not known
+    std::vector<double> energy_change_j_;  ///< per state; NaN if not known
     double energy_scale_j_ = 0.0;
     MotionBounds bounds_;
     std::vector<MotionBounds> particle_bounds_;

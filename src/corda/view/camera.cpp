@@ -97,10 +97,6 @@ class Axis {
 
 }  // namespace
 
-bool needs_motion(const CameraDef& def) {
-    return !def.center_m || !def.height_m || def.follow;
-}
-
 double least_height_m(const CameraDef& def, double height_m) {
     double least_m = def.path.empty() ? height_m : HUGE_VAL;
     for (const CameraKeyDef& key : def.path) least_m = std::min(least_m, key.height_m.value_or(height_m));

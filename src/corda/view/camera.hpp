@@ -28,9 +28,6 @@ struct Insets {
     double bottom_panel_px = 0.0;
 };
 
-/// True if the centre or the height is not given, or follows something, so that it depends on the motion.
-[[nodiscard]] bool needs_motion(const CameraDef& def);
-
 /// The smallest height of a camera's path; `height_m` for keys without one.
 [[nodiscard]] double least_height_m(const CameraDef& def, double height_m);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -86,9 +87,11 @@ struct Font::Impl {
     };
 
     const Glyph& glyph(char32_t character, int size_px) {
-        const auto [entry, is_new] = glyphs.try_emplace({size_px, character});
-        if (is_new) entry->second = load(character, size_px);
-        return entry->second;
+        const std::lock_guard lock(mutex);
+        const std::pair key(size_px, character);
+        auto found = glyphs.find(key);
+        if (found == glyphs.end()) found = glyphs.emplace(key, load(character, size_px)).first;
+        return found->second;
     }
 
     Glyph load(char32_t character, int size_px) {
@@ -130,6 +133,7 @@ struct Font::Impl {
 
     std::string path;
     FontFile file;
+    std::mutex mutex;
     std::map<std::pair<int, char32_t>, Glyph> glyphs;
 };
 
@@ -183,11 +187,11 @@ std::u32string Font::missing(std::string_view utf8) const {
     return missing;
 }
 
-int Font::width_px(std::string_view utf8, int size_px) {
+int Font::width_px(std::string_view utf8, int size_px) const {
     return impl_->for_each_glyph(utf8, 0, 0, size_px, [](const Impl::Glyph&, const PixelRect&) {});
 }
 
-std::string Font::shortened(std::string text, int size_px, int room_px, std::string_view separator) {
+std::string Font::shortened(std::string text, int size_px, int room_px, std::string_view separator) const {
     if (width_px(text, size_px) <= room_px) return text;
     const std::string mark = "…";
     int end = width_px(mark, size_px);
@@ -205,14 +209,14 @@ std::string Font::shortened(std::string text, int size_px, int room_px, std::str
     return kept == 0 ? "" : text.substr(0, kept) + mark;
 }
 
-PixelRect Font::ink(const Text& text) {
+PixelRect Font::ink(const Text& text) const {
     PixelRect ink;
     impl_->for_each_glyph(text.utf8, text.x_px, text.y_px, text.size_px,
                           [&ink](const Impl::Glyph&, const PixelRect& box) { ink = ink.united(box); });
     return ink;
 }
 
-void Font::write(const Text& text, DrawList& list) {
+void Font::write(const Text& text, DrawList& list) const {
     const PixelRect box = ink(text).intersected({0, 0, list.width, list.height});
     if (box.empty()) return;
     const std::size_t first = list.coverage.size();

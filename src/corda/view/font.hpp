@@ -36,7 +36,7 @@ class FontFile : NonCopyable {
 /// Draws text in a font. Glyphs stand on whole pixels; all digits of DejaVu Sans are equally wide.
 ///
 /// Text is UTF-8. A character that the font lacks, a control character or an invalid byte is drawn as a box.
-/// Rendered glyphs are cached, so one thread at a time may use a Font.
+/// Several threads may use a font at once; the glyphs that it has rendered are kept under a lock.
 class Font {
   public:
     /// As FontFile.
@@ -48,15 +48,15 @@ class Font {
     /// The characters of a text that the font lacks or that need shaping, each once and in order.
     [[nodiscard]] std::u32string missing(std::string_view utf8) const;
     /// Advance width of a text, in pixels.
-    [[nodiscard]] int width_px(std::string_view utf8, int size_px);
+    [[nodiscard]] int width_px(std::string_view utf8, int size_px) const;
     /// The text, or its beginning and an ellipsis if it is wider than `room_px`; empty without room. It ends
     /// at a separator if it has one; at a space only if no quarter of the room stays empty.
     [[nodiscard]] std::string shortened(std::string text, int size_px, int room_px,
-                                        std::string_view separator = " ");
+                                        std::string_view separator = " ") const;
     /// Bounding box of the pixels that write() would paint in an unlimited frame; may be empty.
-    [[nodiscard]] PixelRect ink(const Text& text);
+    [[nodiscard]] PixelRect ink(const Text& text) const;
     /// Adds a text on top of the other stamps, cut off at the edges of the frame.
-    void write(const Text& text, DrawList& list);
+    void write(const Text& text, DrawList& list) const;
 
   private:
     struct Impl;

@@ -169,7 +169,7 @@ int Overlay::room_px(int top_px) const {
 }
 
 std::vector<Overlay::TopLine> Overlay::wrapped(std::string text, int size_px,
-                                               const std::function<int(int line)>& room_px) {
+                                               const std::function<int(int line)>& room_px) const {
     std::vector<TopLine> lines;
     for (;;) {
         const int room = room_px(static_cast<int>(lines.size()));
@@ -216,7 +216,7 @@ void Overlay::lay_out_top() {
         method_baseline_px_ = std::max(method_baseline_px_, below_px + rounded(kAscent * em_px_));
 }
 
-void Overlay::draw_text(const OverlayTextDef& text, DrawList& list) {
+void Overlay::draw_text(const OverlayTextDef& text, DrawList& list) const {
     // One whose middle is in the picture stays apart from the plots.
     const bool is_apart = text.at.x * list.width <= width_ && text.at.y * list.height <= height_;
     const int end_px = (is_apart ? width_ : list.width) - edge_px_;
@@ -304,7 +304,7 @@ void Overlay::draw_curves(double time_s, DrawList& list) const {
 }
 
 PixelRect Overlay::label_box(const BodyLabel& label, PixelPoint at, PixelPoint from, int turns,
-                             double clear_px, Font& font) {
+                             double clear_px, const Font& font) const {
     PixelPoint along{at.x - from.x, at.y - from.y};
     const double length = sim::length(along.x, along.y);
     along = length > 0.0 ? PixelPoint{along.x / length, along.y / length} : PixelPoint{0.0, -1.0};
@@ -320,13 +320,13 @@ PixelRect Overlay::label_box(const BodyLabel& label, PixelPoint at, PixelPoint f
     return {x_px, rounded(baseline_px) - rounded(kAscent * em_px_), x_px + width_px, rounded(baseline_px)};
 }
 
-void Overlay::draw_label(const BodyLabel& label, PixelPoint at, PixelPoint from, DrawList& list) {
+void Overlay::draw_label(const BodyLabel& label, PixelPoint at, PixelPoint from, DrawList& list) const {
     const double clear_px = label.clear_px + (kGap + label.row * kLine) * em_px_;
     const PixelRect box = label_box(label, at, from, 0, clear_px, words_);
     if (!box.empty()) words_.write({box.x0, box.y1, em_px_, color_, label.text}, list);
 }
 
-void Overlay::draw_times(std::span<const PoseTime> poses, DrawList& list) {
+void Overlay::draw_times(std::span<const PoseTime> poses, DrawList& list) const {
     if (!time_) return;
     constexpr int kTurns[] = {0, 1, 7, 2, 6, 3, 5, 4};
     constexpr double kFaintest = 0.6;
@@ -367,7 +367,7 @@ std::string Overlay::time_text(double time_s) const {
     return time_label(fmt::format("{:.{}f}", time_s, decimals_), def_.language);
 }
 
-void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& list) {
+void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& list) const {
     for (const PlotPanel& plot : plots_) plot.draw_axes(list, font_, words_);
     for (std::size_t i = 0; i < caption.labels.size(); ++i)
         draw_label(labels_[i], caption.labels[i].first, caption.labels[i].second, list);
@@ -402,7 +402,7 @@ void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& li
                   method_baseline_px_, em_px_, {color_.r, color_.g, color_.b, kDim}, font_, list);
 }
 
-int Overlay::fitting_title_px() {
+int Overlay::fitting_title_px() const {
     const int room_px = title_lines_[0].room_px;
     int size_px = title_px();
     const int width_px = words_.width_px(def_.title, size_px);
@@ -413,14 +413,14 @@ int Overlay::fitting_title_px() {
 }
 
 int Overlay::write_bottom(const std::string& text, int x_px, int end_px, DrawList& list,
-                          const std::string& widest) {
+                          const std::string& widest) const {
     const int width_px = font_.width_px(text, em_px_);
     if (x_px + width_px > end_px) return x_px;
     font_.write({x_px, height_ - edge_px_, em_px_, color_, text}, list);
     return x_px + std::max(width_px, font_.width_px(widest, em_px_)) + rounded(kLine * em_px_);
 }
 
-int Overlay::draw_scale_bar(double pixels_per_metre, int begin_px, int right_px, DrawList& list) {
+int Overlay::draw_scale_bar(double pixels_per_metre, int begin_px, int right_px, DrawList& list) const {
     const double longest_px = std::min(kBarPerWidth * width_, kBarLength * side_px_);
     const double longest_m = longest_px / pixels_per_metre;
     if (!std::isnormal(longest_m)) return right_px;
@@ -441,7 +441,7 @@ int Overlay::draw_scale_bar(double pixels_per_metre, int begin_px, int right_px,
     return text_px - rounded(kLine * em_px_);
 }
 
-Overlay::Legend Overlay::lay_out_legend() {
+Overlay::Legend Overlay::lay_out_legend() const {
     const NumberTitle title = title_of(*scale_);
     const auto number = [&](double value) {
         return localized(display_number(value / title.unit), def_.language);
@@ -457,7 +457,7 @@ Overlay::Legend Overlay::lay_out_legend() {
     return legend;
 }
 
-void Overlay::draw_legend(DrawList& list) {
+void Overlay::draw_legend(DrawList& list) const {
     const auto [name, first, middle, last, x_px, bar_px0, bar_end_px] = lay_out_legend();
     if (x_px < edge_px_) return;
     const auto half_px = [this](const std::string& text) { return font_.width_px(text, em_px_) / 2; };
@@ -490,7 +490,7 @@ void Overlay::draw_gradient(const PixelRect& bar, DrawList& list) const {
 }
 
 void Overlay::write_top(const TopLine& line, std::string_view separator, int baseline_px, int size_px,
-                        Color color, Font& font, DrawList& list) {
+                        Color color, const Font& font, DrawList& list) const {
     font.write(
         {edge_px_, baseline_px, size_px, color, font.shortened(line.text, size_px, line.room_px, separator)},
         list);

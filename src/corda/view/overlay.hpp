@@ -72,9 +72,9 @@ class Overlay {
     void draw_curves(double time_s, DrawList& list) const;
     /// Adds the times of poses, unless the time is switched off: those of later poses first, each where it
     /// hides no other and is nearest to its own pose; one without such a place is left out.
-    void draw_times(std::span<const PoseTime> poses, DrawList& list);
+    void draw_times(std::span<const PoseTime> poses, DrawList& list) const;
     /// Adds the stamps of a picture with this camera scale.
-    void draw(const Caption& caption, double pixels_per_metre, DrawList& list);
+    void draw(const Caption& caption, double pixels_per_metre, DrawList& list) const;
 
   private:
     /// A line of a title or a text.
@@ -96,12 +96,12 @@ class Overlay {
     void lay_out_top();
     /// Breaks a text at spaces into a few lines, of which the last one may be too long.
     [[nodiscard]] std::vector<TopLine> wrapped(std::string text, int size_px,
-                                               const std::function<int(int line)>& room_px);
+                                               const std::function<int(int line)>& room_px) const;
     /// Breaks the title into lines; false if it has to be shortened.
     [[nodiscard]] bool wrap_title();
     /// Width of a line at the upper left whose upper edge is at `top_px`.
     [[nodiscard]] int room_px(int top_px) const;
-    void draw_text(const OverlayTextDef& text, DrawList& list);
+    void draw_text(const OverlayTextDef& text, DrawList& list) const;
     /// The baselines from the upper edge; of the title's last line.
     [[nodiscard]] int title_baseline_px() const;
     [[nodiscard]] int title_line_px() const;
@@ -112,23 +112,23 @@ class Overlay {
     /// Writes a text at the left end of the lower baseline if it ends before `end_px`; returns where the next
     /// may begin, with room for the text `widest`.
     int write_bottom(const std::string& text, int x_px, int end_px, DrawList& list,
-                     const std::string& widest = {});
+                     const std::string& widest = {}) const;
     /// The same for the scale bar, to the left of `right_px`; returns where it begins.
-    int draw_scale_bar(double pixels_per_metre, int begin_px, int right_px, DrawList& list);
+    int draw_scale_bar(double pixels_per_metre, int begin_px, int right_px, DrawList& list) const;
     /// Left end of the legend of arrows, at the lower right; the right edge of texts without one.
     [[nodiscard]] int arrow_x_px() const;
-    [[nodiscard]] Legend lay_out_legend();
-    void draw_legend(DrawList& list);
+    [[nodiscard]] Legend lay_out_legend() const;
+    void draw_legend(DrawList& list) const;
     /// The box of a label in the direction of its line, turned by an eighth turn `turns` times.
     [[nodiscard]] PixelRect label_box(const BodyLabel& label, PixelPoint at, PixelPoint from, int turns,
-                                      double clear_px, Font& font);
-    void draw_label(const BodyLabel& label, PixelPoint at, PixelPoint from, DrawList& list);
+                                      double clear_px, const Font& font) const;
+    void draw_label(const BodyLabel& label, PixelPoint at, PixelPoint from, DrawList& list) const;
     void draw_gradient(const PixelRect& bar, DrawList& list) const;
     /// Size of a title of one line: smaller, down to the size of the other texts, if it would not fit.
-    int fitting_title_px();
+    int fitting_title_px() const;
     /// Writes a line at the left of an upper baseline, shortened at a separator.
     void write_top(const TopLine& line, std::string_view separator, int baseline_px, int size_px, Color color,
-                   Font& font, DrawList& list);
+                   const Font& font, DrawList& list) const;
 
     OverlayDef def_;
     bool time_;

@@ -88,7 +88,7 @@ void PlotAxis::set_labels(int most) {
     }
 }
 
-void PlotAxis::set_labels_apart(int most, int gap_px, int em_px, Font& font) {
+void PlotAxis::set_labels_apart(int most, int gap_px, int em_px, const Font& font) {
     bool fits = false;
     for (; !fits && most >= 1; --most) {
         set_labels(most);
@@ -116,7 +116,7 @@ void PlotBox::add_grid(DrawList& list) const {
                          half_px);
 }
 
-void PlotBox::draw_axes(Color line, Color text, DrawList& list, Font& font) const {
+void PlotBox::draw_axes(Color line, Color text, DrawList& list, const Font& font) const {
     const int tick_px = rounded(kTickLength * em_px);
     const int gap_px = rounded(kGap * em_px);
     const auto width_px = [&](const std::string& of) { return font.width_px(of, em_px); };

@@ -58,7 +58,7 @@ struct PlotAxis {
     /// Sets the labels: round values, at most `most` steps of them.
     void set_labels(int most);
     /// Sets the labels of a horizontal axis, at most `most` steps, so that they are `gap_px` apart.
-    void set_labels_apart(int most, int gap_px, int em_px, Font& font);
+    void set_labels_apart(int most, int gap_px, int em_px, const Font& font);
 };
 
 /// The box of a plot between two axes.
@@ -74,7 +74,7 @@ struct PlotBox {
     /// Adds a line at each label to the last layer.
     void add_grid(DrawList& list) const;
     /// Adds the axes with their ticks and labels, and the title of the x axis.
-    void draw_axes(Color line, Color text, DrawList& list, Font& font) const;
+    void draw_axes(Color line, Color text, DrawList& list, const Font& font) const;
 };
 
 // Shares of the em.

@@ -129,7 +129,7 @@ PlotPanel::PlotPanel(const StyleDef& style, int width_px, int height_px, const P
 }
 
 void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_colors, int least_label_px,
-                         Font& font, Font& words) {
+                         const Font& font, const Font& words) {
     const bool is_over_time = data.end_s > 0.0;
     const auto start_axis = [&](const PlotData::AxisName& name, const ValueRange& range) {
         PlotAxis axis;
@@ -203,7 +203,7 @@ std::vector<std::string> PlotPanel::nameless() const {
     return names;
 }
 
-void PlotPanel::place_names(Font& font) {
+void PlotPanel::place_names(const Font& font) {
     const int least_px = std::max(kMinEmPx, rounded(kSmallestName * plot_.em_px));
     for (name_em_px_ = plot_.em_px; name_em_px_ >= least_px; --name_em_px_)
         if (add_names(font) && room_px() >= rounded(kMinBox * plot_.em_px)) return;
@@ -211,7 +211,7 @@ void PlotPanel::place_names(Font& font) {
     static_cast<void>(add_names(font));
 }
 
-bool PlotPanel::add_names(Font& font) {
+bool PlotPanel::add_names(const Font& font) {
     names_.clear();
     name_rows_ = 0;
     const int begin_px = panel_.x0 + edge_px_;
@@ -243,7 +243,7 @@ int PlotPanel::above_px() const {
     return name_rows_ * rounded(kLine * name_em_px_) + rounded((kAscent + kAboveBox) * plot_.em_px);
 }
 
-bool PlotPanel::place_box(bool is_over_time, int least_label_px, Font& font) {
+bool PlotPanel::place_box(bool is_over_time, int least_label_px, const Font& font) {
     const int gap_px = rounded(kGap * plot_.em_px);
     const int least_px = rounded(kMinBox * plot_.em_px);
     const int top_px = panel_.y0 == 0 ? edge_px_ : gap_px;
@@ -306,7 +306,7 @@ void PlotPanel::draw_curves(double time_s, DrawList& list) const {
     }
 }
 
-void PlotPanel::draw_axes(DrawList& list, Font& font, Font& words) const {
+void PlotPanel::draw_axes(DrawList& list, const Font& font, const Font& words) const {
     if (!is_shown_) return;
     plot_.draw_axes(faint(text_color_, kBoxAlpha), text_color_, list, font);
     const int row_px = rounded(kLine * name_em_px_);

@@ -67,8 +67,8 @@ class PlotPanel {
 
     /// Sets the data and fits the axes to them. Nothing is drawn before the first call. `least_label_px`:
     /// minimum width of the labels of the y axis.
-    void set_data(const PlotData& data, std::span<const Color> body_colors, int least_label_px, Font& font,
-                  Font& words);
+    void set_data(const PlotData& data, std::span<const Color> body_colors, int least_label_px,
+                  const Font& font, const Font& words);
     /// Width of the labels of the y axis: panels above each other have the same.
     [[nodiscard]] int label_px() const { return label_px_; }
     [[nodiscard]] const PixelRect& panel() const { return panel_; }
@@ -79,7 +79,7 @@ class PlotPanel {
     /// Adds the curves up to a time, between points by straight lines.
     void draw_curves(double time_s, DrawList& list) const;
     /// Adds the parts that do not change.
-    void draw_axes(DrawList& list, Font& font, Font& words) const;
+    void draw_axes(DrawList& list, const Font& font, const Font& words) const;
 
   private:
     struct PixelCurve {
@@ -100,15 +100,15 @@ class PlotPanel {
     };
 
     /// Places the names in rows, smaller ones if that shows them all.
-    void place_names(Font& font);
+    void place_names(const Font& font);
     /// Places names of size `name_em_px_`; false if there is no room for all.
-    [[nodiscard]] bool add_names(Font& font);
+    [[nodiscard]] bool add_names(const Font& font);
     /// Height that titles and names leave to the box.
     [[nodiscard]] int room_px() const;
     /// Height of the title and the names above the box.
     [[nodiscard]] int above_px() const;
     /// Places the box and finds the labels; false if there is no room.
-    [[nodiscard]] bool place_box(bool is_over_time, int least_label_px, Font& font);
+    [[nodiscard]] bool place_box(bool is_over_time, int least_label_px, const Font& font);
     /// Fills in the points of a curve in the placed box.
     void place_points(PixelCurve& curve) const;
 

@@ -227,12 +227,6 @@ std::vector<Color> SceneView::body_colors() const {
     return colors;
 }
 
-bool SceneView::needs_motion() const {
-    const auto& inverse = system_->inverse_mass_1_kg;
-    if (quantity_of(style_.color_by) || style_.arrows != Arrows::kNone) return true;
-    return style_.supports && gravity_m_s2_ != Vec2{} && std::ranges::find(inverse, 0.0) != inverse.end();
-}
-
 void SceneView::set_motion(std::span<const MotionBounds> motion) {
     if (!style_.supports) return;
     std::vector<double> line_px;

@@ -71,8 +71,6 @@ class SceneView {
     SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& style,
               const std::vector<BodyStyleDef>& body_styles, int width, int height);
 
-    /// True if pictures depend on the whole motion, whatever the camera.
-    [[nodiscard]] bool needs_motion() const;
     /// Colours links by a quantity, whose fields the states must then have.
     void set_scale(const ColorScale& scale) { scale_ = scale; }
     /// That scale; std::nullopt if colours show no quantity.

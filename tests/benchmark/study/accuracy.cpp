@@ -61,7 +61,7 @@ AccuracyRow run_auto(const AccuracyCase& given, const Timing& timing) {
     constexpr double kReferenceError = 1e-13;
     const Problem& problem = given.problem;
     const System system = problem.system();
-    sim::Recording unread(system.particle_count(), 1, 0);
+    sim::Recording unread(system.particle_count(), 1);
     const auto tolerance_m = [&](const MotionBounds&) { return kTolerance * problem.length_m; };
     const Timeline timeline(problem.fps, problem.last_frame());
     const BodyPlan plan = sim::plan_body(system, problem.world, {tolerance_m, timeline, {}, {}}, unread);

@@ -41,8 +41,7 @@ using SharedRecording = std::shared_ptr<const sim::Recording>;
 SharedRecording record(const Problem& problem, const MethodDef& method) {
     Simulation run(problem.system(), problem.world, method, problem.fps.interval_s());
     const Timeline timeline(problem.fps, problem.last_frame());
-    constexpr std::size_t kNoBudget = std::numeric_limits<std::size_t>::max();
-    auto frames = std::make_shared<sim::Recording>(run.system().particle_count(), timeline.size(), kNoBudget);
+    auto frames = std::make_shared<sim::Recording>(run.system().particle_count(), timeline.size());
     while (frames->size() < timeline.size()) {
         if (frames->advance(run, timeline, {}) == Status::kDiverged) break;
     }
@@ -65,7 +64,7 @@ std::size_t find_horizon(const sim::Recording& first, const sim::Recording& seco
     State b;
     std::size_t k = 0;
     subject.disagreement = 0.0;
-    for (; first.holds(k) && second.holds(k); ++k) {
+    for (; k < std::min(first.size(), second.size()); ++k) {
         first.read(k, a);
         second.read(k, b);
         const double apart = rms_m(a, b) / subject.problem.length_m;

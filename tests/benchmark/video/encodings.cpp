@@ -11,8 +11,8 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/machine.hpp"
+#include "corda/film/film.hpp"
 #include "corda/media/format/format.hpp"
-#include "corda/film/film_renderer.hpp"
 #include "support/edge_quality.hpp"
 
 namespace corda::benchmark {
@@ -49,15 +49,13 @@ class ShownPictures {
 };
 
 /// The quality of the video at `path`.
-json quality_of(Film& film, std::int64_t frames, const std::string& path) {
-    FilmRenderer renderer(film);
+json quality_of(const Film& film, std::int64_t frames, const std::string& path) {
     ShownPictures pictures(path, film.scene().video.width_px, film.scene().video.height_px);
     test::EdgeQuality edges;
     for (std::int64_t k = 0; k < frames; ++k) {
         if (!pictures.read()) throw Error(ExitCode::kEncoder, "the video has too few frames");
         if (k % kCompared != 0) continue;
-        static_cast<void>(renderer.draw(film.time_s(k)));
-        edges.add(renderer.image(), pictures.image());
+        edges.add(film.frame(k), pictures.image());
     }
     return {{"edge_psnr_db", test::psnr_db(edges.mean_square())}, {"edge_ssim", edges.ssim()}};
 }

@@ -18,11 +18,12 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/machine.hpp"
+#include "corda/film/draw.hpp"
+#include "corda/film/film.hpp"
 #include "corda/media/encode/encoder.hpp"
 #include "corda/media/encode/frame_maker.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/media/write/video_file.hpp"
-#include "corda/film/film_renderer.hpp"
 #include "support/yuv420_image.hpp"
 
 namespace corda::benchmark {
@@ -78,11 +79,13 @@ json render(const BenchDef& def, const std::string& path) {
 
 /// Draws the frames one after the other.
 template <class Use>
-void draw_frames(Film& film, std::int64_t frames, const Use& use) {
-    FilmRenderer renderer(film);
+void draw_frames(const Film& film, std::int64_t frames, const Use& use) {
+    const render::CanvasUse canvas(film.context_def());
     for (std::int64_t k = 0; k < frames; ++k) {
-        const Damage damage = renderer.draw(film.time_s(k));
-        use(renderer.image(), damage);
+        const Damage damage =
+            film::paint(film.look(), film.motion(), film.time_s(k), film.scene().video.shutter, *canvas)
+                .damage;
+        use(canvas->image(), damage);
     }
 }
 
@@ -148,10 +151,7 @@ json measure_stages(const BenchDef& def, const std::string& path) {
     const std::int64_t frames = frames_of(def);
     StageClock clock;
     std::optional<Film> film;
-    clock.measure("simulate", [&] {
-        film.emplace(def.scene, def.film);
-        static_cast<void>(film->camera());
-    });
+    clock.measure("simulate", [&] { film.emplace(def.scene, def.film); });
     clock.measure("open OpenGL", [&] { static_cast<void>(film->gl()); });
     clock.measure("draw", [&] { draw_frames(*film, frames, [](const Image&, const Damage&) {}); });
     const media::CheckedVideo checked =

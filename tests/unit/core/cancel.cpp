@@ -70,26 +70,20 @@ TEST(CancelScopes, AreAskedFromTheOutermostToTheInnermost) {
 TEST(CancelScopes, AreNotAskedInsideOfACallback) {
     int asked = 0;
     const CancelScope outer([&asked] {
-        EXPECT_EQ(callback_depth(), 1);
         check_cancelled();
         return ++asked > 0;
     });
     report_progress(
         [](std::int64_t done, std::int64_t total) {
-            EXPECT_EQ(callback_depth(), 1);
-            const CancelScope own([] {
-                EXPECT_EQ(callback_depth(), 2);
-                return true;
-            });
+            bool is_own_asked = false;
+            const CancelScope own([&] { is_own_asked = true; });
             check_cancelled();
-            return done < total;
+            return is_own_asked && done < total;
         },
         1, 2);
     EXPECT_EQ(asked, 1);  // by report_progress(), after its callback
-    EXPECT_EQ(callback_depth(), 0);
     const auto stop = [](std::int64_t, std::int64_t) { return false; };
     EXPECT_EQ(test::code_of([&] { report_progress(stop, 1, 2); }), ExitCode::kInterrupted);
-    EXPECT_EQ(callback_depth(), 0);
 }
 
 }  // namespace

@@ -7,11 +7,11 @@
 
 #include <string>
 
-#include "corda/film/film_renderer.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/scene/scene.hpp"
 #include "support/cancel.hpp"
 #include "support/command.hpp"
+#include "support/draw_list_of.hpp"
 #include "support/failure.hpp"
 #include "support/image_matchers.hpp"
 
@@ -40,7 +40,7 @@ Scene scene_of(const std::string& more = {}) {
     return parse_scene(kFigureRope + more, "figure.toml");
 }
 
-ExitCode code_of(Film& film, const FigureDef& def) {
+ExitCode code_of(const Film& film, const FigureDef& def) {
     return test::code_of([&] { static_cast<void>(draw_figure(film, def)); });
 }
 
@@ -79,7 +79,7 @@ TEST(Strobe, EqualsTheReferenceByteForByte) {
         Film film(scene_of(std::string("[style]\nbackground = \"") + ground + "\"\n"));
         const std::vector<double> times_s{0.0, 0.2, 0.4};
         EXPECT_TRUE(equal_images(draw_figure(film, {.times_s = times_s}),
-                                 render::render_reference(FilmRenderer::list_poses(film, times_s))));
+                                 render::render_reference(test::poses_of(film, times_s))));
     }
 }
 

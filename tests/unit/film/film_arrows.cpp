@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "corda/film/film.hpp"
-#include "corda/film/film_renderer.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "support/draw_list_of.hpp"
 #include "support/failure.hpp"
@@ -35,7 +34,7 @@ TEST(FilmArrows, StayInThePictureOfAFittedCamera) {
             Film film(pendulum("arrows = \"" + std::string(kind) + "\"\n", camera));
             for (std::int64_t k = 0; k < film.frame_count(); ++k) {
                 const double time_s = film.time_s(k);
-                const view::DrawList list = FilmRenderer::list_poses(film, {&time_s, 1});
+                const view::DrawList list = test::poses_of(film, {time_s});
                 std::size_t notes = 0;
                 for (const view::Layer& layer : list.layers) {
                     if (!layer.is_note) continue;
@@ -56,7 +55,7 @@ TEST(FilmArrows, StayInThePictureOfAFittedCamera) {
 TEST(FilmArrows, HaveALegendOfARoundValueInBlurredFramesToo) {
     Film film(pendulum("arrows = \"velocity\"\n", "[overlay]\nscale_bar = false\n"));
     const double time_s = 0.5;
-    const view::DrawList list = FilmRenderer::list_poses(film, {&time_s, 1});
+    const view::DrawList list = test::poses_of(film, {time_s});
     ASSERT_EQ(list.texts.size(), 2U);
     EXPECT_THAT(list.texts[0].utf8, testing::MatchesRegex("[125] m/s"));
     // The arrow of the legend is where it is in a sharp frame: nothing else moves there.
@@ -95,12 +94,11 @@ fps = )" + std::to_string(fps),
 TEST(FilmArrows, OfASnapAreCutAndExplained) {
     Film film(snap(30));
     const double time_s = 0.0;
-    const view::DrawList list = FilmRenderer::list_poses(film, {&time_s, 1});
+    const view::DrawList list = test::poses_of(film, {time_s});
     ASSERT_EQ(list.texts.size(), 2U);
     EXPECT_THAT(list.texts[0].utf8, testing::MatchesRegex("≥ [1-9]0* N"));
     Film calm(pendulum("arrows = \"tension\"\n"));
-    EXPECT_THAT(FilmRenderer::list_poses(calm, {&time_s, 1}).texts[0].utf8,
-                testing::MatchesRegex("[125]0* N"));
+    EXPECT_THAT(test::poses_of(calm, {time_s}).texts[0].utf8, testing::MatchesRegex("[125]0* N"));
 }
 
 TEST(FilmArrows, HaveOneScaleAtAnyFrameRate) {
@@ -129,7 +127,7 @@ TEST(FilmArrows, OfTensionsNeedAMethodThatKnowsThem) {
 TEST(Strobe, NamesTheTimesOfItsPosesSideBySide) {
     Film film(pendulum(""));
     const std::vector<double> times_s{0.0, 0.01, 0.25, 0.5, 0.75};
-    const view::DrawList list = FilmRenderer::list_poses(film, times_s);
+    const view::DrawList list = test::poses_of(film, times_s);
     std::vector<std::string> words;
     view::Font font;
     std::vector<PixelRect> inks;
@@ -142,9 +140,9 @@ TEST(Strobe, NamesTheTimesOfItsPosesSideBySide) {
     }
     // The balls of the first two cover each other.
     EXPECT_EQ(words, (std::vector<std::string>{"0.75 s", "0.50 s", "0.25 s"}));
-    EXPECT_EQ(FilmRenderer::list_poses(film, {times_s.data(), 1}).texts[0].utf8, "t = 0.00 s");
+    EXPECT_EQ(test::poses_of(film, {times_s[0]}).texts[0].utf8, "t = 0.00 s");
     Film without(pendulum("", "[overlay]\ntime = false\nscale_bar = false\n"));
-    EXPECT_TRUE(FilmRenderer::list_poses(without, times_s).texts.empty());
+    EXPECT_TRUE(test::poses_of(without, times_s).texts.empty());
 }
 
 }  // namespace

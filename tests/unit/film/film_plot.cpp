@@ -9,8 +9,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/film/film.hpp"
-#include "corda/film/film_renderer.hpp"
-#include "corda/film/live_plot_data.hpp"
+#include "corda/film/live_plots.hpp"
 #include "corda/film/plan_text.hpp"
 #include "support/draw_list_of.hpp"
 #include "support/failure.hpp"
@@ -35,8 +34,8 @@ fps = 30
                        "plot.toml", all);
 }
 
-view::PlotData plot_of(Film& film) {
-    return test::plotted_of(film).at(0);
+view::PlotData plot_of(const Film& film) {
+    return film::plots_of(film.scene(), film.motion()).at(0);
 }
 
 TEST(FilmPlot, ShowsTheEnergyOfAPendulum) {
@@ -117,18 +116,12 @@ TEST(FilmPlot, ShowsTheAngleInDegreesAndItsRate) {
 }
 
 TEST(FilmPlot, HasNoAngleNextToThePin) {
-    const Scene scene = plotted_scene("angle");
-    const System system = system_of(scene);
-    State state{0.0, {0.0, 0.0}, {0.0, 0.001}, {0.0, -2.0}, {0.0, 0.0}};
-    const auto state_at = [&](double time_s) -> const State& {  // past the pin, at 2 m/s
-        state.time_s = time_s;
-        state.x_m[1] = 1.0 - 2.0 * time_s;
-        return state;
-    };
-    const auto data =
-        film::LivePlotData(scene, system).read({ExactDef{}}, 1.0, state_at, [](const State&) {
-            return Energy{};
-        });
+    // A slack string, without gravity: its end passes the pin at 2 m/s.
+    const Film film(parse_scene(
+        "schema = 1\n[world]\ngravity = 0\nduration = 1\n[[rope]]\npoints = [[0, 0], [1, 0.001]]\n"
+        "string = true\nlink_length = 2\nvelocity = [-2, 0]\n[overlay]\nplots = [\"angle\"]\n",
+        "plot.toml"));
+    const auto data = film::plots_of(film.scene(), film.motion());
     std::size_t gaps = 0;
     for (const view::CurvePoint& point : data.at(0).curves.at(0).points) {
         EXPECT_EQ(std::isnan(point.y), std::hypot(1.0 - 2.0 * point.time_s, 0.001) < 0.2) << point.time_s;
@@ -156,7 +149,7 @@ plots = ["divergence", "angle", "tip"]
 )",
                                     "plot.toml");
     Film film(scene);
-    const std::vector<view::PlotData> plots = test::plotted_of(film);
+    const std::vector<view::PlotData> plots = film::plots_of(film.scene(), film.motion());
     ASSERT_EQ(plots.size(), 3U);
     const std::vector<view::CurvePoint>& points = plots[0].curves.at(0).points;
     EXPECT_EQ(plots[0].curves[0].name, "A – rope 1");
@@ -226,7 +219,7 @@ plots = ["phase", "tip"]
 )",
                                     "plot.toml");
     Film film(scene);
-    const std::vector<view::PlotData> plots = test::plotted_of(film);
+    const std::vector<view::PlotData> plots = film::plots_of(film.scene(), film.motion());
     EXPECT_EQ(plots[0].y.text, "vitesse angulaire");
     EXPECT_EQ(plots[0].curves[0].name, "rope 7");
     EXPECT_EQ(plots[0].curves[1].name, "corde 1");
@@ -277,35 +270,29 @@ TEST(FilmPlot, DoesNotChangeTheMotionAndSimulatesItOnce) {
     Film plain(scene);
     static_cast<void>(plain.frame(3));
     for (const std::int64_t k : {0, 7, 30}) EXPECT_EQ(film.state(k).x_m, plain.state(k).x_m);
-    EXPECT_EQ(film.simulation_passes(), plain.simulation_passes());
+    EXPECT_EQ(film.plan().simulation_passes, plain.plan().simulation_passes);
 }
 
-TEST(FilmPlot, IsTheSameInAnyOrderWithAnyMemory) {
+TEST(FilmPlot, IsTheSameInAnyOrder) {
     for (const char* const shutter : {"video.shutter=0", "video.shutter=0.5"}) {
         for (const char* const plot : {"energy", "tip", "phase", "angle"}) {
             const Scene scene = plotted_scene(plot, {shutter});
-            FilmDef forgetful;
-            forgetful.motion_budget_bytes = 0;
-            Film film(scene);
-            Film other(scene, forgetful);
-            FilmRenderer renderer(film);
-            for (std::int64_t k = 0; k < 6; ++k) {
-                renderer.draw(film.time_s(k));
-                EXPECT_TRUE(test::equal_images(renderer.image(), other.frame(k))) << plot << " " << k;
-            }
-            const Image second = renderer.image();
-            EXPECT_TRUE(test::equal_images(film.frame(5), second));
-            EXPECT_FALSE(film.frame(2) == second);
+            const Film film(scene);
+            const Film other(scene);
+            std::vector<Image> frames;
+            for (std::int64_t k = 0; k < 6; ++k) frames.push_back(film.frame(k));
+            for (const std::size_t k : {5, 2, 0, 4})
+                EXPECT_TRUE(test::equal_images(other.frame(static_cast<std::int64_t>(k)), frames[k]))
+                    << plot << " " << k;
+            EXPECT_FALSE(frames[2] == frames[5]);
         }
     }
 }
 
 TEST(FilmPlot, DoesNotMakeAnEmptyFrameNonEmpty) {
     Film film(plotted_scene("tip", {"camera.center=[100,100]", "camera.height=1"}));
-    static_cast<void>(film.still(0.5));
-    EXPECT_TRUE(film.shows_nothing());
-    const double time_s = 0.5;
-    EXPECT_TRUE(FilmRenderer::list_poses(film, {&time_s, 1}).shows_nothing());
+    EXPECT_TRUE(film.is_empty(0.5));
+    EXPECT_TRUE(test::poses_of(film, {0.5}).shows_nothing());
 }
 
 TEST(FilmPlot, NeedsAMotion) {

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "corda/film/film_renderer.hpp"
+#include "corda/film/film.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"
 #include "support/image_matchers.hpp"
@@ -43,11 +43,8 @@ class RenderThreads : public testing::Test {
   protected:
     [[nodiscard]] std::string file(const std::string& name) const { return folder_.file(name); }
 
-    [[nodiscard]] std::string bytes_of(const Scene& scene, const RenderDef& def = {},
-                                       std::size_t budget_bytes = std::size_t{1} << 20) const {
-        FilmDef film_def;
-        film_def.motion_budget_bytes = budget_bytes;
-        Film film(scene, film_def);
+    [[nodiscard]] std::string bytes_of(const Scene& scene, const RenderDef& def = {}) const {
+        const Film film(scene);
         EXPECT_TRUE(render_video(film, file("out.mp4"), def).complete);
         const std::string bytes = test::read_file(file("out.mp4"));
         std::filesystem::remove(file("out.mp4"));
@@ -60,8 +57,6 @@ class RenderThreads : public testing::Test {
 TEST_F(RenderThreads, HaveTheSameBytesForAnyNumberOfJobs) {
     const std::string expected = bytes_of(long_scene(1));
     for (const int jobs : {2, 3, 8, 0}) EXPECT_TRUE(bytes_of(long_scene(jobs)) == expected) << jobs;
-    // A motion that is not recorded is drawn in order.
-    EXPECT_TRUE(bytes_of(long_scene(4), {}, 0) == expected);
     RenderDef middle;
     middle.first = 20;
     middle.end = 100;
@@ -70,11 +65,8 @@ TEST_F(RenderThreads, HaveTheSameBytesForAnyNumberOfJobs) {
 
 TEST_F(RenderThreads, HaveTheSameBytesIfTheyAreBlurred) {
     const std::vector<Setting> blur{"video.shutter=0.5", "video.subframes=4"};
-    Film film(long_scene(1, blur));
-    EXPECT_TRUE(FilmRenderer::can_draw_in_any_order(film, 130));
     const std::string expected = bytes_of(long_scene(1, blur));
     EXPECT_TRUE(bytes_of(long_scene(3, blur)) == expected);
-    EXPECT_TRUE(bytes_of(long_scene(3, blur), {}, 0) == expected);
 }
 
 TEST_F(RenderThreads, HaveTheSameBytesInEveryFormat) {
@@ -214,26 +206,25 @@ TEST_F(RenderThreads, PassOnExceptionsOfTheCallback) {
     EXPECT_EQ(test::code_of([&] { render_video(film, file("a.mp4"), def); }), ExitCode::kIo);
 }
 
-TEST(FilmRenderers, OfSeveralThreadsDrawTheSame) {
-    Film film(long_scene(1));
-    ASSERT_TRUE(FilmRenderer::can_draw_in_any_order(film, film.frame_count()));
+TEST(FilmFrames, AreTheSameInSeveralThreadsAtOnce) {
     const std::vector<std::int64_t> frames{70, 3, 71};
-    std::vector<std::vector<Image>> drawn(3);
-    std::vector<std::thread> threads;
-    for (std::vector<Image>& images : drawn) {
-        threads.emplace_back([&] {
-            FilmRenderer renderer(film);
-            for (const std::int64_t k : frames) {
-                renderer.draw(film.time_s(k));
-                images.push_back(renderer.image());
-            }
-        });
-    }
-    for (std::thread& thread : threads) thread.join();
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        const Image expected = film.frame(frames[i]);
-        for (const std::vector<Image>& images : drawn)
-            EXPECT_TRUE(test::equal_images(images[i], expected)) << i;
+    for (const std::vector<Setting>& settings :
+         {std::vector<Setting>{}, std::vector<Setting>{"video.shutter=0.5", "video.subframes=4"}}) {
+        const Film film(long_scene(1, settings));
+        std::vector<std::vector<Image>> drawn(3);
+        std::vector<std::thread> threads;
+        for (std::vector<Image>& images : drawn) {
+            threads.emplace_back([&] {
+                for (const std::int64_t k : frames) images.push_back(film.frame(k));
+                images.push_back(film.still(1.01));  // is not recorded
+            });
+        }
+        for (std::thread& thread : threads) thread.join();
+        for (const std::vector<Image>& images : drawn) {
+            for (std::size_t i = 0; i < frames.size(); ++i)
+                EXPECT_TRUE(test::equal_images(images[i], film.frame(frames[i]))) << i;
+            EXPECT_TRUE(test::equal_images(images.back(), film.still(1.01)));
+        }
     }
 }
 

@@ -81,7 +81,6 @@ TEST(Camera, AFixedOneIgnoresTheMotionAndCountsFromTheWorldsOrigin) {
     CameraDef def;
     def.center_m = Vec2{105.0, 50.0};
     def.height_m = 10.0;
-    EXPECT_FALSE(needs_motion(def));
     const Camera camera = fitted_camera(def, {100.0, 50.0}, {}, 640, 480);
     EXPECT_DOUBLE_EQ(camera.pixels_per_metre(), 48.0);
     EXPECT_DOUBLE_EQ(camera.x_px(5.0), 320.0);
@@ -92,7 +91,6 @@ TEST(Camera, AFixedCentreStillFitsTheMotion) {
     CameraDef def;
     def.center_m = Vec2{0.0, 0.0};
     def.margin = 0.0;
-    EXPECT_TRUE(needs_motion(def));
     const MotionBounds bounds = box(-1.0, -1.0, 4.0, 1.0);
     EXPECT_DOUBLE_EQ(fitted_camera(def, {}, {drawn(bounds, 0.0)}, 400, 400).pixels_per_metre(), 50.0);
     EXPECT_DOUBLE_EQ(fitted_camera(def, {}, {drawn(bounds, 20.0)}, 400, 400).pixels_per_metre(), 45.0);
@@ -113,7 +111,6 @@ TEST(Camera, AFittedOneGivenAgainIsTheSame) {
     const Vec2 origin_m{0.1, 1e6};
     const CameraDef fitted =
         fit_camera({}, origin_m, std::vector{drawn(box(-0.3, -1.7, 2.9, 0.1), 3.0)}, 1280, 720);
-    EXPECT_FALSE(needs_motion(fitted));
     const CameraDef again =
         fit_camera(fitted, origin_m, std::vector{drawn(box(0.0, 0.0, 9.0, 9.0), 3.0)}, 1280, 720);
     EXPECT_EQ(again.center_m, fitted.center_m);

@@ -303,19 +303,6 @@ TEST(SceneView, ASlackLinkStaysInsideThePictureAndATautOneNeedsNoRoom) {
     EXPECT_EQ(view.drawn(motion)[0].bounds.max_m(), (Vec2{0.0, 0.0}));
 }
 
-TEST(SceneView, NeedsTheMotionForSupportsThatMayBePlates) {
-    RopeDef rope = reference::straight_rope(1, 1.0, 0.0);
-    const auto needs = [&rope](Vec2 gravity_m_s2, const StyleDef& style) {
-        const System system = build_system({{rope}}, {});
-        return SceneView(system, gravity_m_s2, style, {}, kWidth, kHeight).needs_motion();
-    };
-    EXPECT_TRUE(needs({0.0, -1.0}, StyleDef{}));
-    EXPECT_FALSE(needs({}, StyleDef{}));
-    EXPECT_FALSE(needs({0.0, -1.0}, plain()));
-    rope.pinned = {};
-    EXPECT_FALSE(needs({0.0, -1.0}, StyleDef{}));
-}
-
 TEST(SceneView, AllThatIsDrawnStaysInsideThePicture) {
     StyleDef style;
     style.markers = Markers::kPinned;
@@ -361,7 +348,6 @@ TEST(SceneView, LinksTakeTheColoursOfAScale) {
     const RopeDef rope = reference::straight_rope(2, 1.0, 0.0);
     const System system = build_system({&rope, 1});
     SceneView view(system, {0.0, -9.81}, style, {}, kWidth, kHeight);
-    EXPECT_TRUE(view.needs_motion());
     State state{0.0, system.x_m, system.y_m};
     state.vx_m_s = {0.0, 3.0, 0.0};
     state.vy_m_s = {0.0, 4.0, 10.0};

@@ -268,7 +268,7 @@ class Film:
         source = _path(path) if path is not None else b"text"
         self._gl = _gl(backend, require_gpu)
         try:
-            self._film = _corda.Film(_text(text or "", "text"), source, path is not None, list(lines), *self._gl, False)
+            self._film = _corda.Film(_text(text or "", "text"), source, path is not None, list(lines), *self._gl)
         except Error as error:
             raise _in_words_of_the_caller(error, lines) from None
 

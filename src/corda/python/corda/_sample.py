@@ -3,7 +3,6 @@
 import dataclasses
 import math
 import os
-import threading
 
 import numpy as np
 
@@ -14,7 +13,6 @@ from ._motion import _cubic, _root
 #: Codes of errors that say that a scene is not one that Corda makes. They refuse a sample and do not end the sweep.
 REFUSALS = (2, 3, 8)
 _OF_A_SUMMARY = ("times", "positions", "velocities", "tensions")
-_local = threading.local()  # OpenGL belongs to a thread
 
 
 @dataclasses.dataclass
@@ -59,14 +57,12 @@ def _draw(film, pictures, sample):
     sample.pictures = {}
     if pictures == "none":
         return
-    if not hasattr(_local, "painter"):
-        _local.painter = _corda.Painter()
     if pictures == "npz":
-        sample.arrays["frames"] = _local.painter.frames(film)
+        sample.arrays["frames"] = _corda.frames(film)
     elif pictures == "mp4":
-        (sample.pictures[".mp4"],) = _local.painter.files(film, f"{sample.key}.mp4")
+        (sample.pictures[".mp4"],) = _corda.files(film, f"{sample.key}.mp4")
     else:
-        files = _local.painter.files(film, "%06d.png")
+        files = _corda.files(film, "%06d.png")
         sample.pictures = {f".{k:06}.png": file for k, file in enumerate(files)}
 
 

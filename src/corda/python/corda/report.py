@@ -66,7 +66,7 @@ def _film(options):
     def load(settings):
         film = Film.__new__(Film)
         film._gl = gl
-        film._film = _corda.Film(text, source, is_path, settings, *gl, True)
+        film._film = _corda.Film(text, source, is_path, settings, *gl)
         return film
 
     try:

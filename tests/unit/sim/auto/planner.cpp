@@ -120,7 +120,7 @@ struct Mixed {
     System system = build_system(ropes);
     Timeline timeline{kFrames, 30};
     PlanDef def{[](const MotionBounds&) { return 1e-3; }, timeline, {}, {}};
-    Recording recording{system.particle_count(), timeline.size(), std::size_t{1} << 20};
+    Recording recording{system.particle_count(), timeline.size()};
 };
 
 TEST(AutoPlans, ChooseAMethodPerBodyAndRecordWhatTheyMove) {
@@ -230,7 +230,7 @@ TEST(AutoPlans, RecogniseANetThatIsHeldStill) {
     const auto why_still = [](const NetDef& net) {
         const System system = build_system({}, {&net, 1});
         const Timeline timeline(kFrames, 10);
-        Recording recording(system.particle_count(), timeline.size(), 0);
+        Recording recording(system.particle_count(), timeline.size());
         const PlanDef def{[](const MotionBounds&) { return 1e-3; }, timeline, {}, {}};
         const Plan plan = plan_methods(system, NamedMethods(1), WorldDef{}, def, recording);
         EXPECT_TRUE(plan.error_estimate_m.has_value());

@@ -27,7 +27,7 @@ Outcome outcome_of(const RopeDef& rope, const MethodDef& method, const MethodDef
                    TrialKind kind = {true, false}, const OnProgress& on_progress = {}) {
     const System system = build_system({&rope, 1});
     const auto tolerance = [tolerance_m](const MotionBounds&) { return tolerance_m; };
-    Recording recording(system.particle_count(), 61, 0);
+    Recording recording(system.particle_count(), 61);
     Outcome outcome;
     outcome.trial.method = method;
     outcome.trial.check = check;

@@ -1,4 +1,4 @@
-#include "corda/film/live_plot_data.hpp"
+#include "corda/film/live_plots.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/timeline.hpp"
+#include "corda/film/motion.hpp"
 #include "corda/film/tracked_particle.hpp"
 #include "corda/scene/schema.hpp"
 #include "corda/sim/defs.hpp"
@@ -92,7 +93,7 @@ struct Subject {
 /// A state, and what several plots show of it.
 struct Sample {
     const State& state;
-    const std::function<Energy(const State&)>& energy_of;
+    const Motion& motion;
     std::vector<CurvePoint> turns;  ///< see turning_of(); one per particle of Subject::turning; NaN: a gap
 };
 
@@ -121,7 +122,7 @@ constexpr Kind kKinds[] = {
                   {subject.word("total"), Hue::kText}}};
      },
      [](const Subject&, const Sample& sample) -> std::vector<CurvePoint> {
-         const Energy energy = sample.energy_of(sample.state);
+         const Energy energy = sample.motion.energy_of(sample.state);
          const double potential_j = energy.potential_j();
          return {{.y = energy.kinetic_j}, {.y = potential_j}, {.y = energy.kinetic_j + potential_j}};
      }},
@@ -192,43 +193,52 @@ void raise_zeros(double size_m, PlotData& data) {
     }
 }
 
-}  // namespace
-
-StateFields LivePlotData::readings() const {
-    StateFields fields{.velocities = scene_->overlay.energy};
-    for (const LivePlot plot : scene_->overlay.plots) fields = fields.with(kind_of(plot).fields);
-    return fields;
-}
-
-std::vector<double> LivePlotData::times_s() const {
-    if (scene_->overlay.plots.empty()) return {};
-    constexpr std::size_t kNumbersPerParticle = 4;
-    const std::size_t state_bytes = kNumbersPerParticle * sizeof(double) * system_->particle_count();
-    const std::size_t count = std::min(kFinestSamples, kMaxBytes / state_bytes);
+/// The times at which curves are read, up to the end of the motion.
+std::vector<double> sampled_s(const Scene& scene, const Motion& motion) {
+    const FrameRate fps = scene.video.scene_rate();
+    const Timeline timeline(fps, fps.last_frame_within(scene.world.duration_s),
+                            plot_times_s(scene, motion.system));
+    const std::size_t stride = timeline.size() / kMaxSamples + 1;
+    const double end_s = motion.end_s();
     std::vector<double> times_s;
-    for (std::size_t i = 0; i < count; ++i)
-        times_s.push_back(scene_->world.duration_s * static_cast<double>(i) / static_cast<double>(count));
+    for (std::size_t i = 0; i < timeline.size() && timeline.time_s(i) <= end_s; i += stride)
+        times_s.push_back(timeline.time_s(i));
     return times_s;
 }
 
-std::vector<PlotData> LivePlotData::read(const std::vector<MethodDef>& methods, double end_s,
-                                         const std::function<const State&(double time_s)>& state_at,
-                                         const std::function<Energy(const State&)>& energy_of) const {
-    const Subject subject(*scene_, *system_);
-    const std::vector<LivePlot>& plots = scene_->overlay.plots;
+}  // namespace
+
+StateFields plot_fields(const Scene& scene) {
+    StateFields fields{.velocities = scene.overlay.energy};
+    for (const LivePlot plot : scene.overlay.plots) fields = fields.with(kind_of(plot).fields);
+    return fields;
+}
+
+std::vector<double> plot_times_s(const Scene& scene, const System& system) {
+    if (scene.overlay.plots.empty()) return {};
+    constexpr std::size_t kNumbersPerParticle = 4;
+    const std::size_t state_bytes = kNumbersPerParticle * sizeof(double) * system.particle_count();
+    const std::size_t count = std::min(kFinestSamples, kMaxBytes / state_bytes);
+    std::vector<double> times_s;
+    for (std::size_t i = 0; i < count; ++i)
+        times_s.push_back(scene.world.duration_s * static_cast<double>(i) / static_cast<double>(count));
+    return times_s;
+}
+
+std::vector<PlotData> plots_of(const Scene& scene, const Motion& motion) {
+    const Subject subject(scene, motion.system);
+    const std::vector<LivePlot>& plots = scene.overlay.plots;
     std::vector<PlotData> all;
     for (const LivePlot plot : plots) all.push_back(kind_of(plot).axes(subject));
     for (PlotData& data : all) data.language = subject.language;
-    const FrameRate fps = scene_->video.scene_rate();
-    const Timeline timeline(fps, fps.last_frame_within(scene_->world.duration_s), times_s());
-    const std::size_t stride = timeline.size() / kMaxSamples + 1;
-    const StateFields fields = readings();
-    std::vector<CurvePoint> turns(subject.turning.size());
-    for (std::size_t i = 0; i < timeline.size() && timeline.time_s(i) <= end_s; i += stride) {
-        const State& state = state_at(timeline.time_s(i));
-        Sample sample{state, energy_of, {}};
-        for (std::size_t k = 0; fields.velocities && k < turns.size(); ++k) {
-            turns[k] = turning_of(subject.turning[k], state, i == 0 ? nullptr : &turns[k]);
+    const bool has_velocities = plot_fields(scene).velocities;
+    std::vector<CurvePoint> turns;
+    motion.for_each(sampled_s(scene, motion), [&](const State& state, const Figures& /*figures*/) {
+        Sample sample{state, motion, {}};
+        const bool is_first = turns.empty();
+        turns.resize(subject.turning.size());
+        for (std::size_t k = 0; has_velocities && k < turns.size(); ++k) {
+            turns[k] = turning_of(subject.turning[k], state, is_first ? nullptr : &turns[k]);
             constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
             sample.turns.push_back(subject.is_near_pin(k, state) ? CurvePoint{.x = kNone, .y = kNone}
                                                                  : turns[k]);
@@ -239,13 +249,12 @@ std::vector<PlotData> LivePlotData::read(const std::vector<MethodDef>& methods, 
                 all[p].curves[k].points.push_back(
                     {state.time_s, all[p].end_s > 0.0 ? state.time_s : values[k].x, values[k].y});
         }
-    }
-    const auto is_relaxation = [](const MethodDef& method) {
-        return std::holds_alternative<RelaxationDef>(method);
-    };
+    });
+    const bool has_relaxation = std::ranges::any_of(motion.plan.bodies, [](const BodyPlan& body) {
+        return std::holds_alternative<RelaxationDef>(body.method);
+    });
     for (std::size_t p = 0; p < plots.size(); ++p) {
-        if (plots[p] == LivePlot::kEnergy && std::ranges::any_of(methods, is_relaxation))
-            all[p].curves.pop_back();
+        if (plots[p] == LivePlot::kEnergy && has_relaxation) all[p].curves.pop_back();
         if (all[p].y.is_log) raise_zeros(subject.size_m, all[p]);
     }
     return all;

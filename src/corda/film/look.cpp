@@ -1,0 +1,272 @@
+#include "corda/film/look.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "corda/core/cancel.hpp"
+#include "corda/core/timeline.hpp"
+#include "corda/film/live_plots.hpp"
+#include "corda/film/motion.hpp"
+#include "corda/film/motion_input.hpp"
+#include "corda/film/tracked_particle.hpp"
+#include "corda/sim/forces/forces.hpp"
+
+namespace corda::film {
+namespace {
+
+view::Overlay overlay_of(const Scene& scene) {
+    OverlayDef def = scene.overlay;
+    def.font = font_path(scene);
+    const VideoDef& video = scene.video;
+    return {def, scene.style, video.width_px, video.height_px, video.scene_rate().interval_s()};
+}
+
+/// The frame times up to the end of a motion.
+std::vector<double> frame_times_s(const Scene& scene, const Motion& motion) {
+    const FrameRate fps = scene.video.scene_rate();
+    const std::int64_t last = last_frame_of(scene);
+    const double end_s = motion.end_s();
+    std::vector<double> times_s;
+    for (std::int64_t k = 0; k <= last && (k == 0 || fps.time_s(k) <= end_s); ++k)
+        times_s.push_back(fps.time_s(k));
+    return times_s;
+}
+
+view::TrailPoint trail_point(const State& state, std::size_t i) {
+    return {0.0, {state.x_m[i], state.y_m[i]}, {state.vx_m_s[i], state.vy_m_s[i]}};
+}
+
+Paths paths_of(const Scene& scene, const view::SceneView& view, const Motion& motion) {
+    constexpr double kMaxPoints = 400.0;  // more segments would be shorter than a pixel
+    const double trail_s = scene.style.trail_s;
+    const FrameRate fps = scene.video.scene_rate();
+    const auto stride = std::llround(std::ceil(trail_s / fps.interval_s() / kMaxPoints));
+    Paths paths{view.traced(), trail_s, fps, std::max<std::int64_t>(1, stride), {}};
+    if (paths.particles.empty()) return paths;
+    const std::vector<double> frames_s = frame_times_s(scene, motion);
+    std::vector<double> times_s;
+    for (std::size_t k = 0; k < frames_s.size(); k += static_cast<std::size_t>(paths.stride))
+        times_s.push_back(frames_s[k]);
+    motion.for_each(times_s, [&](const State& state, const Figures& /*figures*/) {
+        check_cancelled();
+        for (const std::size_t i : paths.particles) paths.points.push_back(trail_point(state, i));
+    });
+    return paths;
+}
+
+/// The place of what the camera follows, relative to the system's origin.
+Vec2 followed_m(int follow, const System& system, const State& state) {
+    if (follow == CameraDef::kTip) {
+        const std::size_t tip = tip_of(system);
+        return {state.x_m[tip], state.y_m[tip]};
+    }
+    const Body& body = system.bodies[static_cast<std::size_t>(follow)];
+    Vec2 sum;
+    double mass_kg = 0.0;
+    for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
+        sum = sum + system.mass_kg[i] * Vec2{state.x_m[i], state.y_m[i]};
+        mass_kg += system.mass_kg[i];
+    }
+    return (1.0 / mass_kg) * sum;
+}
+
+/// Averages with weights that fall evenly to 0; the ends count as resting.
+std::vector<Vec2> smoothed(const std::vector<Vec2>& path, std::int64_t half) {
+    const std::int64_t last = std::ssize(path) - 1;
+    std::vector<Vec2> smooth;
+    for (std::int64_t k = 0; k <= last; ++k) {
+        Vec2 sum;
+        for (std::int64_t j = -half; j <= half; ++j)
+            sum = sum + static_cast<double>(half + 1 - std::abs(j)) *
+                            path[static_cast<std::size_t>(std::clamp<std::int64_t>(k + j, 0, last))];
+        smooth.push_back((1.0 / static_cast<double>((half + 1) * (half + 1))) * sum);
+    }
+    return smooth;
+}
+
+/// The extents of arrows at frame times and arrow_times_s().
+view::ArrowExtents arrow_extents(const Look& look, const Motion& motion) {
+    view::ArrowExtents extents;
+    const std::vector<double> instants_s = arrow_times_s(look.scene);
+    const Timeline timeline(look.scene.video.scene_rate(), last_frame_of(look.scene), instants_s);
+    const double end_s = motion.end_s();
+    std::vector<double> times_s;
+    for (std::size_t i = 0; i < timeline.size() && timeline.time_s(i) <= end_s; ++i)
+        times_s.push_back(timeline.time_s(i));
+    motion.for_each(times_s, [&](const State& state, const Figures& /*figures*/) {
+        check_cancelled();
+        extents.include(look.view.arrows().of(state),
+                        std::binary_search(instants_s.begin(), instants_s.end(), state.time_s));
+    });
+    return extents;
+}
+
+/// Fits supports, colour scale, labels and camera to the bounds of each particle and the distribution of the
+/// quantity that colours show.
+void fit(std::span<const MotionBounds> bounds, const sim::Histogram& histogram, Look& look) {
+    const Scene& scene = look.scene;
+    look.view.set_motion(bounds);
+    if (const auto quantity = quantity_of(scene.style.color_by)) {
+        const view::ColorScale scale = view::scale_of(*quantity, histogram, scene.style);
+        look.view.set_scale(scale);
+        look.overlay.set_scale(scale);
+    }
+    std::vector<view::Drawn> drawn = look.view.drawn(bounds);
+    look.overlay.set_labels(look.view.labels(), bounds, drawn);
+    look.camera = view::fit_camera(scene.camera, look.system->origin_m, drawn, scene.video.width_px,
+                                   scene.video.height_px, look.overlay.insets());
+}
+
+/// Height of a picture in which the origin of these bounds of each particle is in the middle of what panels
+/// leave, so that all bodies and arrows are in view.
+double height_about(std::span<const MotionBounds> motion, const view::ArrowExtents& arrows,
+                    const Look& look) {
+    const VideoDef& video = look.scene.video;
+    const CameraDef about{Vec2{}, {}, look.scene.camera.margin};
+    std::vector<view::Drawn> drawn = look.view.drawn_bodies(motion);
+    look.view.arrows().list(drawn, &arrows);
+    view::Insets insets = look.overlay.insets();
+    const auto taken_x_px = static_cast<int>(std::exchange(insets.right_panel_px, 0.0));
+    const auto taken_y_px = static_cast<int>(std::exchange(insets.bottom_panel_px, 0.0));
+    const int height_px = video.height_px - taken_y_px;
+    const CameraDef beside =
+        view::fit_camera(about, {}, drawn, video.width_px - taken_x_px, height_px, insets);
+    return *beside.height_m * (static_cast<double>(video.height_px) / height_px);
+}
+
+/// The height of a camera along a path, one place per frame time, so that all is in view.
+double height_along(const std::vector<Vec2>& path, const std::vector<double>& times_s, const Look& look,
+                    const Motion& motion) {
+    std::vector<MotionBounds> about(look.system->particle_count());
+    view::ArrowExtents arrows;
+    std::size_t k = 0;
+    motion.for_each(times_s, [&](const State& state, const Figures& /*figures*/) {
+        check_cancelled();
+        for (std::size_t i = 0; i < about.size(); ++i)
+            about[i].include(state.x_m[i] - path[k].x, state.y_m[i] - path[k].y);
+        std::vector<view::Arrow> all = look.view.arrows().of(state);
+        for (view::Arrow& arrow : all) arrow.at_m = arrow.at_m - path[k];
+        arrows.include(all, false);
+        ++k;
+    });
+    return height_about(about, arrows, look);
+}
+
+/// The path of a camera that follows something. Sets the camera's height unless the scene gives it.
+view::CameraTrack following_track(const Motion& motion, Look& look) {
+    constexpr double kSmoothSeconds = 0.2;  // half of the video time over which a followed place is averaged
+    constexpr double kMaxSmoothFrames = 100.0;
+    const Scene& scene = look.scene;
+    const std::vector<double> times_s = frame_times_s(scene, motion);
+    std::vector<Vec2> path;
+    motion.for_each(times_s, [&](const State& state, const Figures& /*figures*/) {
+        path.push_back(followed_m(*scene.camera.follow, *look.system, state));
+    });
+    const double half = std::min(kSmoothSeconds * scene.video.fps.per_second(), kMaxSmoothFrames);
+    path = smoothed(path, std::llround(half));
+    if (!scene.camera.height_m) look.camera.height_m = height_along(path, times_s, look, motion);
+    const view::Insets insets = look.overlay.insets();
+    const Vec2 beside_panels_m = (0.5 * *look.camera.height_m / scene.video.height_px) *
+                                 Vec2{insets.right_panel_px, -insets.bottom_panel_px};
+    std::vector<view::CameraTrack::Key> keys;
+    for (std::size_t k = 0; k < times_s.size(); ++k)
+        keys.push_back(
+            {times_s[k], look.system->origin_m + path[k] + beside_panels_m, *look.camera.height_m});
+    return view::CameraTrack(std::move(keys));
+}
+
+view::CameraTrack track_of_path(const Look& look) {
+    std::vector<view::CameraTrack::Key> keys;
+    for (const CameraKeyDef& key : look.scene.camera.path)
+        keys.push_back({key.time_s, key.center_m.value_or(*look.camera.center_m),
+                        key.height_m.value_or(*look.camera.height_m)});
+    return view::CameraTrack(std::move(keys));
+}
+
+}  // namespace
+
+std::vector<view::Trail> Paths::to(const State& state) const {
+    constexpr double kTooClose = 1e-6;  // in frame intervals: it would give its segment no direction
+    if (particles.empty()) return {};
+    const auto time_s = [this](std::size_t point) {
+        return fps.time_s(static_cast<std::int64_t>(point) * stride);
+    };
+    const std::size_t count = points.size() / particles.size();
+    std::size_t first = count;
+    if (const double passed = state.time_s / (fps.interval_s() * static_cast<double>(stride)) + 2.0;
+        passed < static_cast<double>(count))
+        first = static_cast<std::size_t>(passed);
+    while (first > 0 && time_s(first - 1) >= state.time_s - kTooClose * fps.interval_s()) --first;
+    const std::size_t end = first;
+    while (first > 0 && state.time_s - time_s(first - 1) < trail_s) --first;
+    std::vector<view::Trail> trails(particles.size());
+    for (std::size_t p = 0; p < particles.size(); ++p) {
+        for (std::size_t k = first; k < end; ++k) {
+            trails[p].push_back(points[k * particles.size() + p]);
+            trails[p].back().age_s = state.time_s - time_s(k);
+        }
+        trails[p].push_back(trail_point(state, particles[p]));
+    }
+    return trails;
+}
+
+Look::Look(const Scene& of, const System& particles)
+    : scene(of),
+      system(&particles),
+      view(particles, scene.world.gravity_m_s2, scene.style, scene.body_styles, scene.video.width_px,
+           scene.video.height_px),
+      overlay(overlay_of(scene)) {
+    overlay.set_energy_scale(
+        sim::energy_scale_j(particles, sim::Forces(scene.world).on_particles(particles)));
+}
+
+CameraDef Look::camera_at(double time_s) const {
+    return track ? track->at(camera, time_s) : camera;
+}
+
+view::Camera Look::map_at(double time_s) const {
+    return {camera_at(time_s), system->origin_m, scene.video.width_px, scene.video.height_px};
+}
+
+Look look_at(const Scene& scene, const Motion& motion) {
+    Look look(scene, motion.system);
+    if (!scene.overlay.plots.empty())
+        look.overlay.set_plots(plots_of(scene, motion), look.view.body_colors());
+    if (scene.style.arrows != Arrows::kNone) {
+        const view::ArrowExtents extents = arrow_extents(look, motion);
+        look.view.set_arrows(extents);
+        look.overlay.set_arrows(look.view.arrows().pixels_per_unit(), extents.longest(), extents.is_cut());
+    }
+    // The start exists even if the first step diverges.
+    const sim::Recording& recording = *motion.recording;
+    fit(recording.size() > 0 ? recording.particle_bounds() : bounds_of_start(motion.system),
+        recording.histogram(), look);
+    if (scene.camera.follow)
+        look.track = following_track(motion, look);
+    else if (scene.camera.moves())
+        look.track = track_of_path(look);
+    look.paths = paths_of(scene, look.view, motion);
+    return look;
+}
+
+Look look_within(const Scene& scene, const System& system, std::span<const MotionBounds> bounds) {
+    Look look(scene, system);
+    fit(bounds, {}, look);
+    return look;
+}
+
+PictureScale::PictureScale(const Scene& scene, const System& system)
+    : scene_(&scene), origin_m_(system.origin_m), insets_(overlay_of(scene).insets()) {}
+
+double PictureScale::largest_pixels_per_metre(const MotionBounds& bounds) const {
+    const std::array<view::Drawn, 1> lines{{{.bounds = bounds}}};
+    const VideoDef& video = scene_->video;
+    const double height_m =
+        *view::fit_camera(scene_->camera, origin_m_, lines, video.width_px, video.height_px, insets_)
+             .height_m;
+    return video.height_px / view::least_height_m(scene_->camera, height_m);
+}
+
+}  // namespace corda::film
