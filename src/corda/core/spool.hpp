@@ -20,8 +20,6 @@ class Spool : NonCopyable {
     /// `capacity`: the largest size. Space on the disk is allocated here. Throws corda::Error (kIo) without
     /// enough of it.
     explicit Spool(std::size_t capacity, std::size_t max_memory = kMaxMemory);
-    Spool(Spool&&) noexcept = default;
-    Spool& operator=(Spool&&) noexcept = default;
 
     /// Writes values from index `first` on, at most up to the capacity.
     void write(std::size_t first, std::span<const double> values);
