@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -41,24 +42,23 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
                                    const view::ArrowExtents& arrows = {}) {
     const int width_px = scene.video.width_px;
     const int height_px = scene.video.height_px;
-    view::SceneView scene_view(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, width_px,
-                               height_px);
-    scene_view.set_motion(motion);
+    std::optional<view::ColorScale> scale;
+    if (const auto quantity = quantity_of(scene.style.color_by))
+        scale = view::scale_of(*quantity, histogram, scene.style);
+    const view::SceneView scene_view =
+        view::make_scene_view(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, width_px,
+                              height_px, {motion, scale, arrows});
     view::Overlay overlay(scene.overlay, scene.style, width_px, height_px,
                           scene.video.scene_rate().interval_s());
-    if (const auto quantity = quantity_of(scene.style.color_by)) {
-        scene_view.set_scale(view::scale_of(*quantity, histogram, scene.style));
-        overlay.set_scale(view::scale_of(*quantity, histogram, scene.style));
-    }
-    scene_view.set_arrows(arrows);
-    overlay.set_arrows(scene_view.arrows().pixels_per_unit(), arrows.longest(), arrows.is_cut());
+    if (scale) overlay.set_scale(*scale);
+    overlay.set_arrows(scene_view.arrows.pixels_per_unit(), arrows.longest(), arrows.is_cut());
     view::DrawList list;
     const view::Camera map(camera, system.origin_m, width_px, height_px);
-    scene_view.draw(state, map, list, trails);
-    if (!plots.empty()) overlay.set_plots(plots, scene_view.body_colors());
+    view::draw(scene_view, state, map, list, trails);
+    if (!plots.empty()) overlay.set_plots(plots, view::body_colors(scene_view));
     overlay.draw_curves(state.time_s, list);
     std::vector<view::Drawn> drawn;
-    overlay.set_labels(scene_view.labels(), motion, drawn);
+    overlay.set_labels(view::body_labels(scene_view), motion, drawn);
     view::Caption located = caption;
     view::locate(overlay.labels(), state, map, located);
     overlay.draw(located, map.pixels_per_metre(), list);
@@ -67,9 +67,7 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
 
 /// The particles whose paths a film draws.
 inline std::vector<std::size_t> traced(const Film& film) {
-    const Scene& scene = film.scene();
-    return view::SceneView(film.system(), scene.world.gravity_m_s2, scene.style, scene.body_styles, 64, 64)
-        .traced();
+    return view::traced_particles(film.system(), film.scene().style);
 }
 
 inline void add_points(const Film& film, const State& state, double age_s, std::vector<view::Trail>& trails) {
@@ -100,12 +98,12 @@ inline view::DrawList draw_list_of(const Film& film, double time_s) {
     }
     view::ArrowExtents arrows;
     const Scene& scene = film.scene();
-    const view::SceneView view(film.system(), scene.world.gravity_m_s2, scene.style, scene.body_styles,
-                               scene.video.width_px, scene.video.height_px);
+    const view::ArrowLayer layer(film.system(), scene.world.gravity_m_s2, scene.style,
+                                 std::min(scene.video.width_px, scene.video.height_px));
     for (std::int64_t k = 0; k <= film.last_frame() && scene.style.arrows != Arrows::kNone; ++k)
-        arrows.include(view.arrows().of(film.state(k)), false);
+        arrows.include(layer.of(film.state(k)), false);
     for (const double instant_s : film::arrow_times_s(scene))
-        arrows.include(view.arrows().of(film.state_at(instant_s)), true);
+        arrows.include(layer.of(film.state_at(instant_s)), true);
     std::vector<view::Trail> trails(test::traced(film).size());
     const double trail_s = film.scene().style.trail_s;
     for (std::int64_t k = 0; k <= film.last_frame() && !trails.empty(); ++k) {

@@ -35,7 +35,7 @@ view::Caption caption_of(const Look& look, const Motion& motion, const State& st
 /// Fills a list with a state, its trails, and curves up to a time.
 void draw_state(const Look& look, const State& state, const view::Camera& map, double plotted_s,
                 view::DrawList& list) {
-    look.view.draw(state, map, list, look.paths.to(state));
+    view::draw(look.view, state, map, list, look.paths.to(state));
     look.overlay.draw_curves(plotted_s, list);
 }
 
@@ -68,7 +68,7 @@ Painted paint_blurred(const Look& look, const Motion& motion, double time_s, dou
         is_empty = is_empty && list.shows_nothing();
         canvas.expose(list);
     });
-    look.view.start(list);
+    view::start(look.view, list);
     look.overlay.draw(caption, map.pixels_per_metre(), list);
     return {canvas.develop(list), is_empty};
 }
@@ -77,12 +77,12 @@ Painted paint_blurred(const Look& look, const Motion& motion, double time_s, dou
 view::PoseTime add_pose(const Look& look, const State& state, const view::Camera& map, double opacity,
                         view::DrawList& list) {
     const std::size_t first_layer = list.layers.size();
-    look.view.draw_pose(state, map, list);
+    view::draw_pose(look.view, state, map, list);
     for (std::size_t l = first_layer; l < list.layers.size(); ++l) {
         Color& color = list.layers[l].color;
         color.a = static_cast<std::uint8_t>(std::lround(opacity * color.a));
     }
-    const view::BodyLabel label = look.view.label_at(tip_of(*look.system), "");
+    const view::BodyLabel label = view::label_at(look.view, tip_of(*look.system), "");
     return {label, map.at(state, label.particle), map.at(state, label.from), opacity};
 }
 
@@ -98,7 +98,7 @@ void draw(const Look& look, const Motion& motion, double time_s, view::DrawList&
 
 void draw(const Look& look, const State& state, view::DrawList& list) {
     const view::Camera map = look.map_at(0.0);
-    look.view.draw(state, map, list);
+    view::draw(look.view, state, map, list);
     view::Caption caption;
     view::locate(look.overlay.labels(), state, map, caption);
     look.overlay.draw(caption, map.pixels_per_metre(), list);
@@ -107,8 +107,8 @@ void draw(const Look& look, const State& state, view::DrawList& list) {
 void draw_poses(const Look& look, const Motion& motion, std::span<const double> times_s,
                 view::DrawList& list) {
     const view::Camera map = look.map_at(times_s.back());
-    look.view.start(list);
-    look.view.draw_trails(look.paths.to(motion.at(times_s.back())), map, list);
+    view::start(look.view, list);
+    view::draw_trails(look.view, look.paths.to(motion.at(times_s.back())), map, list);
     std::vector<view::PoseTime> poses;
     view::Caption caption;
     motion.for_each(times_s, [&](const State& state, const Figures& figures) {
@@ -120,7 +120,7 @@ void draw_poses(const Look& look, const Motion& motion, std::span<const double> 
                         times_s.size(), kMaxPoseCapsules);
         }
         if (poses.size() < times_s.size()) return;
-        look.view.draw_supports(state, map, list);
+        view::draw_supports(look.view, state, map, list);
         caption = caption_of(look, motion, state, figures, map);
     });
     if (times_s.size() > 1) {  // the picture has no single time
@@ -169,12 +169,12 @@ std::vector<std::uint8_t> mask(const Look& look, const State& state) {
         throw_usage("a mask distinguishes {} bodies, and the scene has {}", kMaxDistinct, bodies);
     const view::Camera map = look.map_at(state.time_s);
     view::DrawList list;
-    look.view.start(list);
+    view::start(look.view, list);
     std::vector<std::uint8_t> mask(static_cast<std::size_t>(list.width) * list.height);
     for (std::size_t i = 0; i < bodies; ++i) {
         check_cancelled();
         list.clear();
-        look.view.draw_body(i, state, map, list);
+        view::draw_body(look.view, i, state, map, list);
         render::mark_covered(list, static_cast<std::uint8_t>(i + 1), mask);
     }
     return mask;

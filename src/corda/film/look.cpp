@@ -38,12 +38,16 @@ view::TrailPoint trail_point(const State& state, std::size_t i) {
     return {0.0, {state.x_m[i], state.y_m[i]}, {state.vx_m_s[i], state.vy_m_s[i]}};
 }
 
-Paths paths_of(const Scene& scene, const view::SceneView& view, const Motion& motion) {
+Paths paths_of(const Scene& scene, const Motion& motion) {
     constexpr double kMaxPoints = 400.0;  // more segments would be shorter than a pixel
     const double trail_s = scene.style.trail_s;
     const FrameRate fps = scene.video.scene_rate();
     const auto stride = std::llround(std::ceil(trail_s / fps.interval_s() / kMaxPoints));
-    Paths paths{view.traced(), trail_s, fps, std::max<std::int64_t>(1, stride), {}};
+    Paths paths{view::traced_particles(motion.system, scene.style),
+                trail_s,
+                fps,
+                std::max<std::int64_t>(1, stride),
+                {}};
     if (paths.particles.empty()) return paths;
     const std::vector<double> frames_s = frame_times_s(scene, motion);
     std::vector<double> times_s;
@@ -87,36 +91,47 @@ std::vector<Vec2> smoothed(const std::vector<Vec2>& path, std::int64_t half) {
 }
 
 /// The extents of arrows at frame times and arrow_times_s().
-view::ArrowExtents arrow_extents(const Look& look, const Motion& motion) {
+view::ArrowExtents arrow_extents(const Scene& scene, const Motion& motion) {
     view::ArrowExtents extents;
-    const std::vector<double> instants_s = arrow_times_s(look.scene);
-    const Timeline timeline(look.scene.video.scene_rate(), last_frame_of(look.scene), instants_s);
+    if (scene.style.arrows == Arrows::kNone) return extents;
+    const VideoDef& video = scene.video;
+    const view::ArrowLayer arrows(motion.system, scene.world.gravity_m_s2, scene.style,
+                                  std::min(video.width_px, video.height_px));
+    const std::vector<double> instants_s = arrow_times_s(scene);
+    const Timeline timeline(video.scene_rate(), last_frame_of(scene), instants_s);
     const double end_s = motion.end_s();
     std::vector<double> times_s;
     for (std::size_t i = 0; i < timeline.size() && timeline.time_s(i) <= end_s; ++i)
         times_s.push_back(timeline.time_s(i));
     motion.for_each(times_s, [&](const State& state, const Figures& /*figures*/) {
         check_cancelled();
-        extents.include(look.view.arrows().of(state),
+        extents.include(arrows.of(state),
                         std::binary_search(instants_s.begin(), instants_s.end(), state.time_s));
     });
     return extents;
 }
 
-/// Fits supports, colour scale, labels and camera to the bounds of each particle and the distribution of the
-/// quantity that colours show.
-void fit(std::span<const MotionBounds> bounds, const sim::Histogram& histogram, Look& look) {
-    const Scene& scene = look.scene;
-    look.view.set_motion(bounds);
-    if (const auto quantity = quantity_of(scene.style.color_by)) {
-        const view::ColorScale scale = view::scale_of(*quantity, histogram, scene.style);
-        look.view.set_scale(scale);
-        look.overlay.set_scale(scale);
-    }
-    std::vector<view::Drawn> drawn = look.view.drawn(bounds);
-    look.overlay.set_labels(look.view.labels(), bounds, drawn);
-    look.camera = view::fit_camera(scene.camera, look.system->origin_m, drawn, scene.video.width_px,
-                                   scene.video.height_px, look.overlay.insets());
+std::optional<view::ColorScale> color_scale(const Scene& scene, const sim::Histogram& histogram) {
+    const auto quantity = quantity_of(scene.style.color_by);
+    return quantity ? std::optional(view::scale_of(*quantity, histogram, scene.style)) : std::nullopt;
+}
+
+/// The look of a scene that moves like this, with a camera at rest and without trails.
+Look fitted_look(const Scene& scene, const System& system, const view::WholeMotion& motion,
+                 std::span<const view::PlotData> plots) {
+    const VideoDef& video = scene.video;
+    view::SceneView view = view::make_scene_view(system, scene.world.gravity_m_s2, scene.style,
+                                                 scene.body_styles, video.width_px, video.height_px, motion);
+    view::Overlay overlay = overlay_of(scene);
+    overlay.set_energy_scale(sim::energy_scale_j(system, sim::Forces(scene.world).on_particles(system)));
+    if (!plots.empty()) overlay.set_plots(plots, view::body_colors(view));
+    overlay.set_arrows(view.arrows.pixels_per_unit(), motion.arrows.longest(), motion.arrows.is_cut());
+    if (motion.scale) overlay.set_scale(*motion.scale);
+    std::vector<view::Drawn> drawn = view::drawn(view, motion.bounds);
+    overlay.set_labels(view::body_labels(view), motion.bounds, drawn);
+    const CameraDef camera = view::fit_camera(scene.camera, system.origin_m, drawn, video.width_px,
+                                              video.height_px, overlay.insets());
+    return {scene, &system, std::move(view), std::move(overlay), camera};
 }
 
 /// Height of a picture in which the origin of these bounds of each particle is in the middle of what panels
@@ -125,8 +140,8 @@ double height_about(std::span<const MotionBounds> motion, const view::ArrowExten
                     const Look& look) {
     const VideoDef& video = look.scene.video;
     const CameraDef about{Vec2{}, {}, look.scene.camera.margin};
-    std::vector<view::Drawn> drawn = look.view.drawn_bodies(motion);
-    look.view.arrows().list(drawn, &arrows);
+    std::vector<view::Drawn> drawn = view::drawn_bodies(look.view, motion);
+    look.view.arrows.list(drawn, &arrows);
     view::Insets insets = look.overlay.insets();
     const auto taken_x_px = static_cast<int>(std::exchange(insets.right_panel_px, 0.0));
     const auto taken_y_px = static_cast<int>(std::exchange(insets.bottom_panel_px, 0.0));
@@ -136,44 +151,48 @@ double height_about(std::span<const MotionBounds> motion, const view::ArrowExten
     return *beside.height_m * (static_cast<double>(video.height_px) / height_px);
 }
 
-/// The height of a camera along a path, one place per frame time, so that all is in view.
-double height_along(const std::vector<Vec2>& path, const std::vector<double>& times_s, const Look& look,
-                    const Motion& motion) {
+/// Where something is that the camera follows, at frame times.
+struct FollowedPath {
+    std::vector<double> times_s;
+    std::vector<Vec2> at_m;  ///< relative to the system's origin
+};
+
+FollowedPath followed_path(const Scene& scene, const Motion& motion) {
+    constexpr double kSmoothSeconds = 0.2;  // half of the video time over which a followed place is averaged
+    constexpr double kMaxSmoothFrames = 100.0;
+    FollowedPath path{frame_times_s(scene, motion), {}};
+    motion.for_each(path.times_s, [&](const State& state, const Figures& /*figures*/) {
+        path.at_m.push_back(followed_m(*scene.camera.follow, motion.system, state));
+    });
+    const double half = std::min(kSmoothSeconds * scene.video.fps.per_second(), kMaxSmoothFrames);
+    path.at_m = smoothed(path.at_m, std::llround(half));
+    return path;
+}
+
+/// The height of a camera along a path so that all is in view.
+double height_along(const FollowedPath& path, const Look& look, const Motion& motion) {
     std::vector<MotionBounds> about(look.system->particle_count());
     view::ArrowExtents arrows;
     std::size_t k = 0;
-    motion.for_each(times_s, [&](const State& state, const Figures& /*figures*/) {
+    motion.for_each(path.times_s, [&](const State& state, const Figures& /*figures*/) {
         check_cancelled();
         for (std::size_t i = 0; i < about.size(); ++i)
-            about[i].include(state.x_m[i] - path[k].x, state.y_m[i] - path[k].y);
-        std::vector<view::Arrow> all = look.view.arrows().of(state);
-        for (view::Arrow& arrow : all) arrow.at_m = arrow.at_m - path[k];
+            about[i].include(state.x_m[i] - path.at_m[k].x, state.y_m[i] - path.at_m[k].y);
+        std::vector<view::Arrow> all = look.view.arrows.of(state);
+        for (view::Arrow& arrow : all) arrow.at_m = arrow.at_m - path.at_m[k];
         arrows.include(all, false);
         ++k;
     });
     return height_about(about, arrows, look);
 }
 
-/// The path of a camera that follows something. Sets the camera's height unless the scene gives it.
-view::CameraTrack following_track(const Motion& motion, Look& look) {
-    constexpr double kSmoothSeconds = 0.2;  // half of the video time over which a followed place is averaged
-    constexpr double kMaxSmoothFrames = 100.0;
-    const Scene& scene = look.scene;
-    const std::vector<double> times_s = frame_times_s(scene, motion);
-    std::vector<Vec2> path;
-    motion.for_each(times_s, [&](const State& state, const Figures& /*figures*/) {
-        path.push_back(followed_m(*scene.camera.follow, *look.system, state));
-    });
-    const double half = std::min(kSmoothSeconds * scene.video.fps.per_second(), kMaxSmoothFrames);
-    path = smoothed(path, std::llround(half));
-    if (!scene.camera.height_m) look.camera.height_m = height_along(path, times_s, look, motion);
+view::CameraTrack track_along(const FollowedPath& path, double height_m, const Look& look) {
     const view::Insets insets = look.overlay.insets();
-    const Vec2 beside_panels_m = (0.5 * *look.camera.height_m / scene.video.height_px) *
-                                 Vec2{insets.right_panel_px, -insets.bottom_panel_px};
+    const Vec2 beside_panels_m =
+        (0.5 * height_m / look.scene.video.height_px) * Vec2{insets.right_panel_px, -insets.bottom_panel_px};
     std::vector<view::CameraTrack::Key> keys;
-    for (std::size_t k = 0; k < times_s.size(); ++k)
-        keys.push_back(
-            {times_s[k], look.system->origin_m + path[k] + beside_panels_m, *look.camera.height_m});
+    for (std::size_t k = 0; k < path.times_s.size(); ++k)
+        keys.push_back({path.times_s[k], look.system->origin_m + path.at_m[k] + beside_panels_m, height_m});
     return view::CameraTrack(std::move(keys));
 }
 
@@ -212,16 +231,6 @@ std::vector<view::Trail> Paths::to(const State& state) const {
     return trails;
 }
 
-Look::Look(const Scene& of, const System& particles)
-    : scene(of),
-      system(&particles),
-      view(particles, scene.world.gravity_m_s2, scene.style, scene.body_styles, scene.video.width_px,
-           scene.video.height_px),
-      overlay(overlay_of(scene)) {
-    overlay.set_energy_scale(
-        sim::energy_scale_j(particles, sim::Forces(scene.world).on_particles(particles)));
-}
-
 CameraDef Look::camera_at(double time_s) const {
     return track ? track->at(camera, time_s) : camera;
 }
@@ -231,30 +240,28 @@ view::Camera Look::map_at(double time_s) const {
 }
 
 Look look_at(const Scene& scene, const Motion& motion) {
-    Look look(scene, motion.system);
-    if (!scene.overlay.plots.empty())
-        look.overlay.set_plots(plots_of(scene, motion), look.view.body_colors());
-    if (scene.style.arrows != Arrows::kNone) {
-        const view::ArrowExtents extents = arrow_extents(look, motion);
-        look.view.set_arrows(extents);
-        look.overlay.set_arrows(look.view.arrows().pixels_per_unit(), extents.longest(), extents.is_cut());
-    }
     // The start exists even if the first step diverges.
     const sim::Recording& recording = *motion.recording;
-    fit(recording.size() > 0 ? recording.particle_bounds() : bounds_of_start(motion.system),
-        recording.histogram(), look);
-    if (scene.camera.follow)
-        look.track = following_track(motion, look);
-    else if (scene.camera.moves())
+    const std::vector<MotionBounds> bounds =
+        recording.size() > 0 ? recording.particle_bounds() : bounds_of_start(motion.system);
+    std::vector<view::PlotData> plots;
+    if (!scene.overlay.plots.empty()) plots = plots_of(scene, motion);
+    Look look =
+        fitted_look(scene, motion.system,
+                    {bounds, color_scale(scene, recording.histogram()), arrow_extents(scene, motion)}, plots);
+    if (scene.camera.follow) {
+        const FollowedPath path = followed_path(scene, motion);
+        if (!scene.camera.height_m) look.camera.height_m = height_along(path, look, motion);
+        look.track = track_along(path, *look.camera.height_m, look);
+    } else if (scene.camera.moves()) {
         look.track = track_of_path(look);
-    look.paths = paths_of(scene, look.view, motion);
+    }
+    look.paths = paths_of(scene, motion);
     return look;
 }
 
 Look look_within(const Scene& scene, const System& system, std::span<const MotionBounds> bounds) {
-    Look look(scene, system);
-    fit(bounds, {}, look);
-    return look;
+    return fitted_look(scene, system, {bounds, color_scale(scene, {})}, {});
 }
 
 PictureScale::PictureScale(const Scene& scene, const System& system)

@@ -33,27 +33,25 @@ struct Paths {
 /// What depends on a whole motion: its camera, colours, arrows, supports, plots and trails. Made by
 /// look_at(), and never changed afterwards.
 struct Look {
-    /// Without a motion; `system` must outlive the look. Throws corda::Error (kInvalidScene) for an invalid
-    /// size, style or camera.
-    Look(const Scene& scene, const System& system);
-
-    /// The camera at a time, with centre and height, and its map to pixels.
-    [[nodiscard]] CameraDef camera_at(double time_s) const;
-    [[nodiscard]] view::Camera map_at(double time_s) const;
-
     Scene scene;
     const System* system;
     view::SceneView view;
     view::Overlay overlay;
     CameraDef camera;  ///< with centre and height, of one that moves those without its path
-    std::optional<view::CameraTrack> track;  ///< of a camera that moves
-    Paths paths;
+    std::optional<view::CameraTrack> track = {};  ///< of a camera that moves
+    Paths paths = {};
+
+    /// The camera at a time, with centre and height, and its map to pixels.
+    [[nodiscard]] CameraDef camera_at(double time_s) const;
+    [[nodiscard]] view::Camera map_at(double time_s) const;
 };
 
-/// How a scene looks that moves like this. The motion must outlive it.
+/// How a scene looks that moves like this. The motion must outlive it. Throws corda::Error (kInvalidScene)
+/// for an invalid size, style or camera.
 [[nodiscard]] Look look_at(const Scene& scene, const Motion& motion);
 
 /// How a scene looks in which no particle moves out of its bounds: without plots, arrows and trails.
+/// `system` must outlive the look.
 [[nodiscard]] Look look_within(const Scene& scene, const System& system,
                                std::span<const MotionBounds> bounds);
 

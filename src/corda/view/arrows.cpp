@@ -112,12 +112,20 @@ void add_arrow(PixelPoint from, PixelPoint to, double side_px, bool has_halo, bo
     }
 }
 
-ArrowLayer::ArrowLayer(const System& system, Vec2 gravity_m_s2, const StyleDef& style, double side_px)
+ArrowLayer::ArrowLayer(const System& system, Vec2 gravity_m_s2, const StyleDef& style, double side_px,
+                       const ArrowExtents& extents)
     : system_(&system),
       gravity_m_s2_(gravity_m_s2),
       kind_(style.arrows),
       color_(arrow_color(style)),
-      side_px_(side_px) {
+      side_px_(side_px),
+      extents_(extents),
+      longest_(extents.longest()),
+      usual_(extents.is_cut() ? longest_ / kCut : longest_) {
+    const double longest_px = side_px_ * (kind_ == Arrows::kWeight    ? kLongestWeight
+                                          : kind_ == Arrows::kTension ? kLongestTension
+                                                                      : kLongest);
+    if (longest_ > 0.0) pixels_per_unit_ = longest_px / longest_;
     const std::size_t bodies = kind_ == Arrows::kNone ? 0 : system.bodies.size();
     for (std::size_t b = 0; b < bodies; b += (bodies + kMaxArrows - 1) / kMaxArrows) {
         const Body& body = system.bodies[b];
@@ -172,16 +180,6 @@ std::vector<Arrow> ArrowLayer::of(const State& state, double apart_m) const {
         arrows.push_back({at_m, value, to_support_m});
     }
     return arrows;
-}
-
-void ArrowLayer::set_extents(const ArrowExtents& extents) {
-    extents_ = extents;
-    longest_ = extents.longest();
-    usual_ = extents.is_cut() ? longest_ / kCut : longest_;
-    const double longest_px = side_px_ * (kind_ == Arrows::kWeight    ? kLongestWeight
-                                          : kind_ == Arrows::kTension ? kLongestTension
-                                                                      : kLongest);
-    pixels_per_unit_ = longest_ > 0.0 ? longest_px / longest_ : 0.0;
 }
 
 void ArrowLayer::list(std::vector<Drawn>& drawn, const ArrowExtents* extents) const {

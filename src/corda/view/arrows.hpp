@@ -59,14 +59,14 @@ void add_arrow(PixelPoint from, PixelPoint to, double side_px, bool has_halo, bo
 /// them.
 class ArrowLayer {
   public:
-    /// `system` must outlive this.
-    ArrowLayer(const System& system, Vec2 gravity_m_s2, const StyleDef& style, double side_px);
+    /// The extents during the motion set the scale; without extents nothing is drawn. `system` must outlive
+    /// this.
+    ArrowLayer(const System& system, Vec2 gravity_m_s2, const StyleDef& style, double side_px,
+               const ArrowExtents& extents = {});
 
     /// The arrows of a state, which must have fields_of() them; those along a rope at least `apart_m` apart,
     /// and as far from the support that they point to.
     [[nodiscard]] std::vector<Arrow> of(const State& state, double apart_m = 0.0) const;
-    /// Sets the scale by the extents during the motion. Nothing is drawn before the call.
-    void set_extents(const ArrowExtents& extents);
     /// Adds the extents of all arrows, as a camera that moves sees them if `extents` are given, to a list.
     void list(std::vector<Drawn>& drawn, const ArrowExtents* extents = nullptr) const;
     /// Draws the arrows that are longer than their heads. Usual ones of tension in a rope do not touch,

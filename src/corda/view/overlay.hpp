@@ -14,8 +14,8 @@
 #include "corda/view/defs.hpp"
 #include "corda/view/draw_list.hpp"
 #include "corda/view/font.hpp"
+#include "corda/view/labels.hpp"
 #include "corda/view/plot_panel.hpp"
-#include "corda/view/scene_view.hpp"
 
 namespace corda::view {
 

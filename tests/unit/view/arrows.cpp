@@ -15,10 +15,10 @@ namespace {
 constexpr double kShorterPx = 480.0;
 constexpr Vec2 kGravity{0.0, -10.0};
 
-ArrowLayer layer_of(const System& system, Arrows kind) {
+ArrowLayer layer_of(const System& system, Arrows kind, const ArrowExtents& extents = {}) {
     StyleDef style;
     style.arrows = kind;
-    return {system, kGravity, style, kShorterPx};
+    return {system, kGravity, style, kShorterPx, extents};
 }
 
 State state_of(const System& system) {
@@ -79,11 +79,10 @@ TEST(Arrows, AreFewOnManyParticlesAndOnManyBodies) {
 
 TEST(Arrows, HaveTheLongestAtAShareOfThePicture) {
     const System system = build_system(std::vector{reference::straight_rope(1, 1.0, 0.0)});
-    ArrowLayer layer = layer_of(system, Arrows::kVelocity);
     ArrowExtents extents;
-    extents.include(layer.of(state_of(system)), false);
+    extents.include(layer_of(system, Arrows::kVelocity).of(state_of(system)), false);
     EXPECT_EQ(extents.longest(), 5.0);
-    layer.set_extents(extents);
+    const ArrowLayer layer = layer_of(system, Arrows::kVelocity, extents);
     EXPECT_DOUBLE_EQ(layer.pixels_per_unit(), 0.22 * kShorterPx / 5.0);
     DrawList list;
     list.width = list.height = static_cast<int>(kShorterPx);
@@ -123,8 +122,7 @@ TEST(Arrows, FarLargerThanThoseOfMostInstantsAreCut) {
 
 TEST(Arrows, ThatAreCutHaveTwoHeadsAndTheLongestLength) {
     const System system = build_system(std::vector{reference::straight_rope(1, 1.0, 0.0)});
-    ArrowLayer layer = layer_of(system, Arrows::kVelocity);
-    layer.set_extents(extents_with(1, 500.0));
+    const ArrowLayer layer = layer_of(system, Arrows::kVelocity, extents_with(1, 500.0));
     const auto drawn = [&](double speed_m_s) {
         State state = state_of(system);
         state.vx_m_s.back() = speed_m_s;
@@ -147,7 +145,6 @@ TEST(Arrows, ThatAreCutHaveTwoHeadsAndTheLongestLength) {
 /// The highest pixel of the arrows of a rope's tensions that hangs straight down from y = 240.
 double top_px(int links, double tension_n) {
     const System system = build_system(std::vector{reference::straight_rope(links, 1.0, 0.0)});
-    ArrowLayer layer = layer_of(system, Arrows::kTension);
     State state = state_of(system);
     std::fill(state.tension_n.begin(), state.tension_n.end(), 10.0);
     for (std::size_t i = 0; i < system.particle_count(); ++i) {
@@ -155,8 +152,8 @@ double top_px(int links, double tension_n) {
         state.y_m[i] = -1.0 * static_cast<double>(i) / links;
     }
     ArrowExtents extents;
-    extents.include(layer.of(state), false);
-    layer.set_extents(extents);
+    extents.include(layer_of(system, Arrows::kTension).of(state), false);
+    const ArrowLayer layer = layer_of(system, Arrows::kTension, extents);
     std::fill(state.tension_n.begin(), state.tension_n.end(), tension_n);
     DrawList list;
     list.width = list.height = static_cast<int>(kShorterPx);
@@ -177,10 +174,9 @@ TEST(Arrows, OfTensionEndBelowTheSupport) {
 TEST(Arrows, OfTensionInARopeDoNotTouchAndSpecksAreLeftOut) {
     const System rope = build_system(std::vector{reference::straight_rope(40, 4.0, 0.0)});
     State state = state_of(rope);
-    ArrowLayer layer = layer_of(rope, Arrows::kTension);
     ArrowExtents extents;
-    extents.include(layer.of(state), false);
-    layer.set_extents(extents);
+    extents.include(layer_of(rope, Arrows::kTension).of(state), false);
+    const ArrowLayer layer = layer_of(rope, Arrows::kTension, extents);
     const double longest_m = 1.0;
     const std::vector<Arrow> apart = layer.of(state, longest_m);
     ASSERT_GE(apart.size(), 3U);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "benchmark/study/reference/ropes.hpp"
+#include "corda/view/labels.hpp"
 #include "support/draw_list_of.hpp"
 #include "support/draw_lists.hpp"
 
@@ -23,14 +24,13 @@ DrawList draw(std::vector<RopeDef> ropes, const StyleDef& style, std::vector<Bod
     for (RopeDef& rope : ropes) rope.reach = rope.material.is_string ? 1 : 3;
     const System system = build_system(ropes, nets);
     styles.resize(ropes.size() + nets.size());
-    SceneView view(system, gravity_m_s2, style, styles, kWidth, kHeight);
     const State state{0.0, system.x_m, system.y_m};
     std::vector<MotionBounds> motion;
     test::include(state, motion);
-    view.set_motion(motion);
-    const CameraDef fitted = fit_camera({}, system.origin_m, view.drawn(motion), kWidth, kHeight);
+    const SceneView view = make_scene_view(system, gravity_m_s2, style, styles, kWidth, kHeight, {motion});
+    const CameraDef fitted = fit_camera({}, system.origin_m, drawn(view, motion), kWidth, kHeight);
     DrawList list;
-    view.draw(state, Camera(fitted, system.origin_m, kWidth, kHeight), list);
+    draw(view, state, Camera(fitted, system.origin_m, kWidth, kHeight), list);
     std::erase_if(list.layers, [](const Layer& layer) { return layer.capsule_count == 0; });
     return list;
 }
@@ -59,7 +59,7 @@ std::vector<BodyLabel> labels_of(const std::vector<RopeDef>& ropes, const std::v
                                  const std::vector<BodyStyleDef>& styles = {}) {
     System system = build_system(ropes);
     for (std::size_t i = 0; i < names.size(); ++i) system.bodies[i].label = names[i];
-    return SceneView(system, {0.0, -9.81}, {}, styles, kWidth, kHeight).labels();
+    return body_labels(make_scene_view(system, {0.0, -9.81}, {}, styles, kWidth, kHeight));
 }
 
 TEST(SceneView, ALabelIsAboveItsPinOrAtItsFreeEnd) {
@@ -142,8 +142,8 @@ TEST(SceneView, LinesAreAShareOfTheShorterSideAndNeverThinnerThanTwoPixels) {
     style.rope_width_px = std::nullopt;
     const System system = build_system({{reference::straight_rope(1, 1.0, 0.0)}}, {});
     const auto width_px = [&](int width, int height) {
-        const SceneView view(system, {}, style, {}, width, height);
-        return 2.0 * view.drawn(std::vector<MotionBounds>(2))[0].up_px;
+        const SceneView view = make_scene_view(system, {}, style, {}, width, height);
+        return 2.0 * drawn(view, std::vector<MotionBounds>(2))[0].up_px;
     };
     EXPECT_DOUBLE_EQ(width_px(1920, 1080), 9.0);
     EXPECT_DOUBLE_EQ(width_px(1080, 1920), 9.0);
@@ -296,11 +296,11 @@ TEST(SceneView, ASlackLinkStaysInsideThePictureAndATautOneNeedsNoRoom) {
     }
     const System system =
         build_system({{slack_string({{0.0, 0.0}, {0.0, -1.0}, {0.0, -2.0}}, {1.0, 1.0})}}, {});
-    const SceneView view(system, {0.0, -1.0}, plain(), {}, kWidth, kHeight);
+    const SceneView view = make_scene_view(system, {0.0, -1.0}, plain(), {}, kWidth, kHeight);
     std::vector<MotionBounds> motion;
     test::include({0.0, system.x_m, system.y_m}, motion);
-    EXPECT_EQ(view.drawn(motion)[0].bounds.min_m(), (Vec2{0.0, -2.0}));
-    EXPECT_EQ(view.drawn(motion)[0].bounds.max_m(), (Vec2{0.0, 0.0}));
+    EXPECT_EQ(drawn(view, motion)[0].bounds.min_m(), (Vec2{0.0, -2.0}));
+    EXPECT_EQ(drawn(view, motion)[0].bounds.max_m(), (Vec2{0.0, 0.0}));
 }
 
 TEST(SceneView, AllThatIsDrawnStaysInsideThePicture) {
@@ -347,19 +347,21 @@ TEST(SceneView, LinksTakeTheColoursOfAScale) {
     style.color_by = ColorBy::kSpeed;
     const RopeDef rope = reference::straight_rope(2, 1.0, 0.0);
     const System system = build_system({&rope, 1});
-    SceneView view(system, {0.0, -9.81}, style, {}, kWidth, kHeight);
     State state{0.0, system.x_m, system.y_m};
     state.vx_m_s = {0.0, 3.0, 0.0};
     state.vy_m_s = {0.0, 4.0, 10.0};
     const Camera camera({.center_m = Vec2{}, .height_m = 4.0}, system.origin_m, kWidth, kHeight);
-    DrawList list;
-    view.draw(state, camera, list);
-    EXPECT_FALSE(list.layers.front().is_tinted);  // before there is a scale
+    const auto draw_with = [&](const std::optional<ColorScale>& scale) {
+        DrawList list;
+        draw(make_scene_view(system, {0.0, -9.81}, style, {}, kWidth, kHeight, {{}, scale}), state, camera,
+             list);
+        return list;
+    };
+    EXPECT_FALSE(draw_with({}).layers.front().is_tinted);
     sim::Histogram histogram;
     histogram.add(10.0);
     const ColorScale scale = scale_of(Quantity::kSpeed, histogram, style);
-    view.set_scale(scale);
-    view.draw(state, camera, list);
+    const DrawList list = draw_with(scale);
     ASSERT_TRUE(list.layers.front().is_tinted);
     const auto color = [&](std::size_t k) {
         const Tint tint = list.capsules[k].tint;
@@ -391,7 +393,7 @@ TEST(SceneView, TracesTheFreeEndsOrGivenParticlesOfEachBody) {
     style.trail_s = 1.0;
     const System system = build_system(
         std::vector{reference::straight_rope(2, 1.0, 30.0), reference::straight_rope(5, 1.0, 30.0)});
-    const auto traced = [&] { return SceneView(system, {}, style, {}, kWidth, kHeight).traced(); };
+    const auto traced = [&] { return traced_particles(system, style); };
     EXPECT_EQ(traced(), (std::vector<std::size_t>{2, 8}));
     style.trail_of = {1, -1, 4, -6};
     EXPECT_EQ(traced(), (std::vector<std::size_t>{1, 2, 4, 8, 7, 3}));
