@@ -101,7 +101,7 @@ struct Demand {
     double trail_points = 0.0;
 };
 
-/// Points of trails that are recorded: as TrailRecorder does, one per frame, fewer if a trail is long.
+/// Points of trails that are recorded: as film::Paths, one per frame, fewer if a trail is long.
 double trail_points(const Scene& scene, std::int64_t particles) {
     if (scene.style.trail_s == 0.0) return 0.0;
     constexpr double kMaxPoints = 400.0;
