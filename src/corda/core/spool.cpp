@@ -38,7 +38,7 @@ Descriptor open_nameless(std::size_t bytes) {
     return file;
 }
 
-/// Calls `transfer` with what is left of some bytes and where it is in the file, until all are done.
+/// Calls `transfer` with the remaining bytes and their offset in the file until all are transferred.
 template <class Byte, class Transfer>
 void transfer_all(std::size_t offset, std::span<Byte> bytes, const Transfer& transfer) {
     for (std::size_t done = 0; done < bytes.size();) {

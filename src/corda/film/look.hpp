@@ -30,7 +30,7 @@ struct Paths {
     [[nodiscard]] std::vector<view::Trail> to(const State& state) const;
 };
 
-/// What depends on a whole motion: its camera, colours, arrows, supports, plots and trails. Made by
+/// The camera, colours, arrows, supports, plots and trails of a scene with a motion. Made by
 /// look_at(), and never changed afterwards.
 struct Look {
     Scene scene;

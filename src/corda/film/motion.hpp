@@ -16,7 +16,7 @@
 
 namespace corda::film {
 
-/// What simulate() records besides what the pictures of the scene show.
+/// Times and fields that simulate() records in addition to those that the pictures of the scene need.
 struct RecordDef {
     std::vector<double> times_s;  ///< between frames, of stills
     double shutter = 0.0;         ///< exposure of these stills

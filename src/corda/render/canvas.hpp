@@ -10,7 +10,7 @@
 
 namespace corda::render {
 
-/// An OpenGL context and what draws with it: turns draw lists of any size into pictures.
+/// An OpenGL context with a renderer: turns draw lists of any size into pictures.
 class Canvas : NonCopyable {
   public:
     /// Throws corda::Error (kNoGl).
