@@ -48,20 +48,17 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
     const view::SceneView scene_view =
         view::make_scene_view(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, width_px,
                               height_px, {motion, scale, arrows});
-    view::Overlay overlay(scene.overlay, scene.style, width_px, height_px,
-                          scene.video.scene_rate().interval_s());
-    if (scale) overlay.set_scale(*scale);
-    overlay.set_arrows(scene_view.arrows.pixels_per_unit(), arrows.longest(), arrows.is_cut());
+    const std::vector<Color> body_colors = view::body_colors(scene_view);
+    const view::Overlay overlay = view::make_overlay(
+        scene.overlay, scene.style, width_px, height_px, scene.video.scene_rate().interval_s(),
+        {scale, scene_view.arrows.scale(), 0.0, view::body_labels(scene_view), plots, body_colors});
     view::DrawList list;
     const view::Camera map(camera, system.origin_m, width_px, height_px);
     view::draw(scene_view, state, map, list, trails);
-    if (!plots.empty()) overlay.set_plots(plots, view::body_colors(scene_view));
-    overlay.draw_curves(state.time_s, list);
-    std::vector<view::Drawn> drawn;
-    overlay.set_labels(view::body_labels(scene_view), motion, drawn);
+    view::draw_curves(overlay, state.time_s, list);
     view::Caption located = caption;
-    view::locate(overlay.labels(), state, map, located);
-    overlay.draw(located, map.pixels_per_metre(), list);
+    located.labels = view::places_of(overlay.labels, state, map);
+    view::draw(overlay, located, map.pixels_per_metre(), list);
     return list;
 }
 

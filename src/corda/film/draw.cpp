@@ -28,7 +28,7 @@ view::Caption caption_of(const Look& look, const Motion& motion, const State& st
     view::Caption caption{state.time_s, figures.energy_error,
                           method_caption(plan, estimate_px, look.scene.overlay.language)};
     if (look.scene.overlay.energy && !figures.energy_error) caption.energy = motion.energy_of(state);
-    view::locate(look.overlay.labels(), state, map, caption);
+    caption.labels = view::places_of(look.overlay.labels, state, map);
     return caption;
 }
 
@@ -36,7 +36,7 @@ view::Caption caption_of(const Look& look, const Motion& motion, const State& st
 void draw_state(const Look& look, const State& state, const view::Camera& map, double plotted_s,
                 view::DrawList& list) {
     view::draw(look.view, state, map, list, look.paths.to(state));
-    look.overlay.draw_curves(plotted_s, list);
+    view::draw_curves(look.overlay, plotted_s, list);
 }
 
 /// The times of an exposure at `time_s`, in order.
@@ -69,7 +69,7 @@ Painted paint_blurred(const Look& look, const Motion& motion, double time_s, dou
         canvas.expose(list);
     });
     view::start(look.view, list);
-    look.overlay.draw(caption, map.pixels_per_metre(), list);
+    view::draw(look.overlay, caption, map.pixels_per_metre(), list);
     return {canvas.develop(list), is_empty};
 }
 
@@ -83,7 +83,7 @@ view::PoseTime add_pose(const Look& look, const State& state, const view::Camera
         color.a = static_cast<std::uint8_t>(std::lround(opacity * color.a));
     }
     const view::BodyLabel label = view::label_at(look.view, tip_of(*look.system), "");
-    return {label, map.at(state, label.particle), map.at(state, label.from), opacity};
+    return {label, {map.at(state, label.particle), map.at(state, label.from)}, opacity};
 }
 
 }  // namespace
@@ -92,7 +92,7 @@ void draw(const Look& look, const Motion& motion, double time_s, view::DrawList&
     const view::Camera map = look.map_at(time_s);
     motion.for_each({&time_s, 1}, [&](const State& state, const Figures& figures) {
         draw_state(look, state, map, time_s, list);
-        look.overlay.draw(caption_of(look, motion, state, figures, map), map.pixels_per_metre(), list);
+        view::draw(look.overlay, caption_of(look, motion, state, figures, map), map.pixels_per_metre(), list);
     });
 }
 
@@ -100,8 +100,8 @@ void draw(const Look& look, const State& state, view::DrawList& list) {
     const view::Camera map = look.map_at(0.0);
     view::draw(look.view, state, map, list);
     view::Caption caption;
-    view::locate(look.overlay.labels(), state, map, caption);
-    look.overlay.draw(caption, map.pixels_per_metre(), list);
+    caption.labels = view::places_of(look.overlay.labels, state, map);
+    view::draw(look.overlay, caption, map.pixels_per_metre(), list);
 }
 
 void draw_poses(const Look& look, const Motion& motion, std::span<const double> times_s,
@@ -129,10 +129,10 @@ void draw_poses(const Look& look, const Motion& motion, std::span<const double> 
         const std::vector<std::string> digits = view::digits_of(times_s);
         for (std::size_t k = 0; k < poses.size(); ++k)
             poses[k].label.text = view::localized(digits[k] + " s", look.scene.overlay.language);
-        look.overlay.draw_times(poses, list);
+        if (look.overlay.has_time) view::draw_times(look.overlay.area, poses, list);
     }
-    look.overlay.draw_curves(times_s.back(), list);
-    look.overlay.draw(caption, map.pixels_per_metre(), list);
+    view::draw_curves(look.overlay, times_s.back(), list);
+    view::draw(look.overlay, caption, map.pixels_per_metre(), list);
 }
 
 Painted paint(const Look& look, const Motion& motion, double time_s, double shutter, render::Canvas& canvas) {
@@ -174,7 +174,7 @@ std::vector<std::uint8_t> mask(const Look& look, const State& state) {
     for (std::size_t i = 0; i < bodies; ++i) {
         check_cancelled();
         list.clear();
-        view::draw_body(look.view, i, state, map, list);
+        view::draw_bodies(look.view, i, i + 1, state, map, list);
         render::mark_covered(list, static_cast<std::uint8_t>(i + 1), mask);
     }
     return mask;

@@ -140,7 +140,7 @@ std::vector<Vec2> Film::to_pixels(std::span<const Vec2> positions_m, double time
 }
 
 std::vector<std::string> Film::left_out() const {
-    return film::left_out_of(scene(), look().overlay.plots());
+    return film::left_out_of(scene(), look().overlay.plots);
 }
 
 GlInfo Film::gl() const {

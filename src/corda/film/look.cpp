@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "corda/core/cancel.hpp"
@@ -16,11 +17,12 @@
 namespace corda::film {
 namespace {
 
-view::Overlay overlay_of(const Scene& scene) {
+view::Overlay overlay_of(const Scene& scene, const view::OverlayData& data = {}) {
     OverlayDef def = scene.overlay;
     def.font = font_path(scene);
     const VideoDef& video = scene.video;
-    return {def, scene.style, video.width_px, video.height_px, video.scene_rate().interval_s()};
+    return view::make_overlay(def, scene.style, video.width_px, video.height_px,
+                              video.scene_rate().interval_s(), data);
 }
 
 /// The frame times up to the end of a motion.
@@ -122,15 +124,16 @@ Look fitted_look(const Scene& scene, const System& system, const view::WholeMoti
     const VideoDef& video = scene.video;
     view::SceneView view = view::make_scene_view(system, scene.world.gravity_m_s2, scene.style,
                                                  scene.body_styles, video.width_px, video.height_px, motion);
-    view::Overlay overlay = overlay_of(scene);
-    overlay.set_energy_scale(sim::energy_scale_j(system, sim::Forces(scene.world).on_particles(system)));
-    if (!plots.empty()) overlay.set_plots(plots, view::body_colors(view));
-    overlay.set_arrows(view.arrows.pixels_per_unit(), motion.arrows.longest(), motion.arrows.is_cut());
-    if (motion.scale) overlay.set_scale(*motion.scale);
+    const std::vector<Color> body_colors = view::body_colors(view);
+    view::Overlay overlay =
+        overlay_of(scene, {motion.scale, view.arrows.scale(),
+                           sim::energy_scale_j(system, sim::Forces(scene.world).on_particles(system)),
+                           view::body_labels(view), plots, body_colors});
     std::vector<view::Drawn> drawn = view::drawn(view, motion.bounds);
-    overlay.set_labels(view::body_labels(view), motion.bounds, drawn);
+    std::ranges::copy(view::drawn_labels(overlay.area, overlay.labels, motion.bounds),
+                      std::back_inserter(drawn));
     const CameraDef camera = view::fit_camera(scene.camera, system.origin_m, drawn, video.width_px,
-                                              video.height_px, overlay.insets());
+                                              video.height_px, overlay.insets);
     return {scene, &system, std::move(view), std::move(overlay), camera};
 }
 
@@ -142,7 +145,7 @@ double height_about(std::span<const MotionBounds> motion, const view::ArrowExten
     const CameraDef about{Vec2{}, {}, look.scene.camera.margin};
     std::vector<view::Drawn> drawn = view::drawn_bodies(look.view, motion);
     look.view.arrows.list(drawn, &arrows);
-    view::Insets insets = look.overlay.insets();
+    view::Insets insets = look.overlay.insets;
     const auto taken_x_px = static_cast<int>(std::exchange(insets.right_panel_px, 0.0));
     const auto taken_y_px = static_cast<int>(std::exchange(insets.bottom_panel_px, 0.0));
     const int height_px = video.height_px - taken_y_px;
@@ -187,7 +190,7 @@ double height_along(const FollowedPath& path, const Look& look, const Motion& mo
 }
 
 view::CameraTrack track_along(const FollowedPath& path, double height_m, const Look& look) {
-    const view::Insets insets = look.overlay.insets();
+    const view::Insets insets = look.overlay.insets;
     const Vec2 beside_panels_m =
         (0.5 * height_m / look.scene.video.height_px) * Vec2{insets.right_panel_px, -insets.bottom_panel_px};
     std::vector<view::CameraTrack::Key> keys;
@@ -265,7 +268,7 @@ Look look_within(const Scene& scene, const System& system, std::span<const Motio
 }
 
 PictureScale::PictureScale(const Scene& scene, const System& system)
-    : scene_(&scene), origin_m_(system.origin_m), insets_(overlay_of(scene).insets()) {}
+    : scene_(&scene), origin_m_(system.origin_m), insets_(overlay_of(scene).insets) {}
 
 double PictureScale::largest_pixels_per_metre(const MotionBounds& bounds) const {
     const std::array<view::Drawn, 1> lines{{{.bounds = bounds}}};

@@ -120,12 +120,12 @@ ArrowLayer::ArrowLayer(const System& system, Vec2 gravity_m_s2, const StyleDef& 
       color_(arrow_color(style)),
       side_px_(side_px),
       extents_(extents),
-      longest_(extents.longest()),
-      usual_(extents.is_cut() ? longest_ / kCut : longest_) {
+      scale_{0.0, extents.longest(), extents.is_cut()},
+      usual_(scale_.is_cut ? scale_.longest / kCut : scale_.longest) {
     const double longest_px = side_px_ * (kind_ == Arrows::kWeight    ? kLongestWeight
                                           : kind_ == Arrows::kTension ? kLongestTension
                                                                       : kLongest);
-    if (longest_ > 0.0) pixels_per_unit_ = longest_px / longest_;
+    if (scale_.longest > 0.0) scale_.pixels_per_unit = longest_px / scale_.longest;
     const std::size_t bodies = kind_ == Arrows::kNone ? 0 : system.bodies.size();
     for (std::size_t b = 0; b < bodies; b += (bodies + kMaxArrows - 1) / kMaxArrows) {
         const Body& body = system.bodies[b];
@@ -184,18 +184,18 @@ std::vector<Arrow> ArrowLayer::of(const State& state, double apart_m) const {
 
 void ArrowLayer::list(std::vector<Drawn>& drawn, const ArrowExtents* extents) const {
     (extents == nullptr ? extents_ : *extents)
-        .list(longest_, pixels_per_unit_, (kHeadWidth + kHeadLine) * shaft_px(side_px_), drawn);
+        .list(scale_.longest, scale_.pixels_per_unit, (kHeadWidth + kHeadLine) * shaft_px(side_px_), drawn);
 }
 
 void ArrowLayer::draw(const State& state, const Camera& camera, DrawList& list) const {
-    if (pixels_per_unit_ == 0.0) return;
+    if (scale_.pixels_per_unit == 0.0) return;
     list.add_layer(color_);
     list.layers.back().is_note = true;
     const double head_px = kHeadLength * shaft_px(side_px_);
-    const double apart_px = pixels_per_unit_ * usual_ + head_px;
+    const double apart_px = scale_.pixels_per_unit * usual_ + head_px;
     for (const Arrow& arrow : of(state, apart_px / camera.pixels_per_metre())) {
         const double size = sim::length(arrow.value.x, arrow.value.y);
-        const double length_px = pixels_per_unit_ * std::min(size, longest_);
+        const double length_px = scale_.pixels_per_unit * std::min(size, scale_.longest);
         if (length_px < head_px) continue;
         const Vec2 along = (1.0 / size) * arrow.value;
         // A head is longer than a ring is wide.
@@ -205,7 +205,7 @@ void ArrowLayer::draw(const State& state, const Camera& camera, DrawList& list) 
             return PixelPoint{camera.x_px(arrow.at_m.x) + way_px * along.x,
                               camera.y_px(arrow.at_m.y) - way_px * along.y};
         };
-        add_arrow(at(end_px - length_px), at(end_px), side_px_, true, size > longest_, list);
+        add_arrow(at(end_px - length_px), at(end_px), side_px_, true, size > scale_.longest, list);
     }
 }
 

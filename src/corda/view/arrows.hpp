@@ -55,6 +55,13 @@ class ArrowExtents {
 /// small head. `side_px`: the shorter side of the frame.
 void add_arrow(PixelPoint from, PixelPoint to, double side_px, bool has_halo, bool is_cut, DrawList& list);
 
+/// The scale of arrows, the same in all pictures of a film.
+struct ArrowScale {
+    double pixels_per_unit = 0.0;  ///< 0: there are no arrows
+    double longest = 0.0;          ///< the size of the longest one
+    bool is_cut = false;           ///< some are larger
+};
+
 /// The arrows of a scene, with one scale for all pictures. Of many particles, or many bodies, only some have
 /// them.
 class ArrowLayer {
@@ -72,7 +79,7 @@ class ArrowLayer {
     /// Draws the arrows that are longer than their heads. Usual ones of tension in a rope do not touch,
     /// and one that would reach a support is moved back along its line.
     void draw(const State& state, const Camera& camera, DrawList& list) const;
-    [[nodiscard]] double pixels_per_unit() const { return pixels_per_unit_; }
+    [[nodiscard]] const ArrowScale& scale() const { return scale_; }
 
   private:
     /// A free particle. Tension pulls it along `bar`.
@@ -93,9 +100,8 @@ class ArrowLayer {
     double side_px_;
     std::vector<Place> places_;
     ArrowExtents extents_;
-    double longest_ = 0.0;
+    ArrowScale scale_;
     double usual_ = 0.0;  ///< most arrows are no longer
-    double pixels_per_unit_ = 0.0;
 };
 
 }  // namespace corda::view

@@ -1,11 +1,16 @@
 #include "corda/view/labels.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
 namespace corda::view {
 namespace {
+
+/// The share of the picture's width that a label takes at most, and the em that it may always take.
+constexpr double kMaxLabel = 0.3;
+constexpr double kShortLabel = 6.0;
 
 std::optional<std::size_t> first_pin(const System& system, const Body& body) {
     for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i)
@@ -47,6 +52,33 @@ BodyLabel label_of(const SceneView& view, std::size_t b) {
     return {body.label, *pin, *pin, clear_px};
 }
 
+/// Free distance around the particle of a label.
+double clear_px(const TextArea& area, const BodyLabel& label) {
+    return label.clear_px + (kGap + label.row * kLine) * area.em_px;
+}
+
+/// The box of a label in the direction of its line, turned by an eighth turn `turns` times.
+PixelRect label_box(const TextArea& area, const std::string& text, const LabelPlace& place, int turns,
+                    double clear_px, const Font& font) {
+    const auto& [at, from] = place;
+    PixelPoint along{at.x - from.x, at.y - from.y};
+    const double length = sim::length(along.x, along.y);
+    along = length > 0.0 ? PixelPoint{along.x / length, along.y / length} : PixelPoint{0.0, -1.0};
+    constexpr double kHalfRoot = 0.70710678118654752;
+    for (int i = 0; i < turns; ++i)
+        along = {kHalfRoot * (along.x - along.y), kHalfRoot * (along.x + along.y)};
+    const int width_px = font.width_px(text, area.em_px);
+    const double middle_px = at.x + along.x * (clear_px + 0.5 * width_px);
+    const double baseline_px = at.y + along.y * clear_px + 0.5 * (1.0 + along.y) * kAscent * area.em_px;
+    // Beyond the frame, pixels may be more than an int holds.
+    if (!(std::abs(middle_px) < area.width_px + width_px &&
+          std::abs(baseline_px) < area.height_px + area.em_px))
+        return {};
+    const int x_px = rounded(middle_px - 0.5 * width_px);
+    return {x_px, rounded(baseline_px) - rounded(kAscent * area.em_px), x_px + width_px,
+            rounded(baseline_px)};
+}
+
 }  // namespace
 
 BodyLabel label_at(const SceneView& view, std::size_t particle, std::string text) {
@@ -72,6 +104,80 @@ std::vector<BodyLabel> body_labels(const SceneView& view) {
         labels.push_back(std::move(label));
     }
     return labels;
+}
+
+std::vector<LabelPlace> places_of(std::span<const BodyLabel> labels, const State& state,
+                                  const Camera& camera) {
+    std::vector<LabelPlace> places;
+    for (const BodyLabel& label : labels)
+        places.push_back({camera.at(state, label.particle), camera.at(state, label.from)});
+    return places;
+}
+
+std::vector<BodyLabel> shortened(const TextArea& area, std::vector<BodyLabel> labels) {
+    const int most_px = rounded(std::max(kMaxLabel * area.width_px, kShortLabel * area.em_px));
+    for (BodyLabel& label : labels)
+        label.text = area.words.shortened(std::move(label.text), area.em_px, most_px);
+    return labels;
+}
+
+std::vector<Drawn> drawn_labels(const TextArea& area, std::span<const BodyLabel> labels,
+                                std::span<const MotionBounds> bounds) {
+    std::vector<Drawn> drawn;
+    for (const BodyLabel& label : labels) {
+        const double width_px = area.words.width_px(label.text, area.em_px);
+        const double gap_px = clear_px(area, label);
+        Drawn text;
+        text.bounds = bounds[label.particle];
+        text.up_px = gap_px + kAscent * area.em_px;
+        const bool is_above = label.from == label.particle;
+        text.left_px = text.right_px = is_above ? 0.5 * width_px : gap_px + width_px;
+        if (!is_above) text.down_px = text.up_px;
+        drawn.push_back(text);
+    }
+    return drawn;
+}
+
+void draw_label(const TextArea& area, const BodyLabel& label, const LabelPlace& place, DrawList& list) {
+    const PixelRect box = label_box(area, label.text, place, 0, clear_px(area, label), area.words);
+    if (!box.empty()) area.words.write({box.x0, box.y1, area.em_px, area.color, label.text}, list);
+}
+
+void draw_times(const TextArea& area, std::span<const PoseTime> poses, DrawList& list) {
+    constexpr int kTurns[] = {0, 1, 7, 2, 6, 3, 5, 4};
+    constexpr double kFaintest = 0.6;
+    const int gap_px = rounded(kGap * area.em_px);
+    std::vector<PixelRect> taken{
+        {0, area.height_px - area.edge_px - area.em_px, area.width_px, area.height_px}};
+    for (auto pose = poses.rbegin(); pose != poses.rend(); ++pose) {
+        const auto distance_px = [](const PixelRect& box, const PoseTime& to) {  // from its ball
+            const double x_px = std::clamp<double>(to.place.at.x, box.x0, box.x1) - to.place.at.x;
+            const double y_px = std::clamp<double>(to.place.at.y, box.y0, box.y1) - to.place.at.y;
+            return sim::length(x_px, y_px) - to.label.clear_px;
+        };
+        const auto is_clear = [&](const PixelRect& box) {  // whose time it is
+            return std::ranges::all_of(poses, [&](const PoseTime& other) {
+                return &other == &*pose || distance_px(box, other) > distance_px(box, *pose) + gap_px;
+            });
+        };
+        const auto is_free = [&](const PixelRect& box) {
+            const PixelRect around{box.x0 - gap_px, box.y0 - gap_px, box.x1 + gap_px, box.y1 + gap_px};
+            return !box.empty() && around.intersected({0, 0, area.width_px, area.height_px}) == around &&
+                   std::ranges::all_of(
+                       taken, [&](const PixelRect& other) { return around.intersected(other).empty(); });
+        };
+        for (int i = 0; i < 16; ++i) {  // near, then farther away
+            const double clear_px = pose->label.clear_px + gap_px + (i < 8 ? 0.0 : kLine * area.em_px);
+            const PixelRect box =
+                label_box(area, pose->label.text, pose->place, kTurns[i % 8], clear_px, area.font);
+            if (!is_free(box) || !is_clear(box)) continue;
+            Color color = area.color;
+            color.a = static_cast<std::uint8_t>(std::lround(255.0 * std::max(kFaintest, pose->opacity)));
+            area.font.write({box.x0, box.y1, area.em_px, color, pose->label.text}, list);
+            taken.push_back(box);
+            break;
+        }
+    }
 }
 
 }  // namespace corda::view

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "corda/view/camera.hpp"
+#include "corda/view/overlay_texts.hpp"
 #include "corda/view/scene_view.hpp"
 
 namespace corda::view {
@@ -25,5 +28,34 @@ struct BodyLabel {
 
 /// A label of a particle: beyond the end of a rope, otherwise above it.
 [[nodiscard]] BodyLabel label_at(const SceneView& view, std::size_t particle, std::string text);
+
+/// Where the particles of a label are: that next to it, and that from which its line comes.
+struct LabelPlace {
+    PixelPoint at;
+    PixelPoint from;
+};
+
+[[nodiscard]] std::vector<LabelPlace> places_of(std::span<const BodyLabel> labels, const State& state,
+                                                const Camera& camera);
+
+/// The labels, shortened to a share of the picture's width.
+[[nodiscard]] std::vector<BodyLabel> shortened(const TextArea& area, std::vector<BodyLabel> labels);
+
+/// Extents of labels of particles that stay within `bounds`.
+[[nodiscard]] std::vector<Drawn> drawn_labels(const TextArea& area, std::span<const BodyLabel> labels,
+                                              std::span<const MotionBounds> bounds);
+
+void draw_label(const TextArea& area, const BodyLabel& label, const LabelPlace& place, DrawList& list);
+
+/// A pose among several in one picture.
+struct PoseTime {
+    BodyLabel label;
+    LabelPlace place;
+    double opacity = 1.0;
+};
+
+/// Adds the times of poses: those of later poses first, each where it hides no other and is nearest to its
+/// own pose; one without such a place is left out.
+void draw_times(const TextArea& area, std::span<const PoseTime> poses, DrawList& list);
 
 }  // namespace corda::view

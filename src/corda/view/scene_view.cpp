@@ -169,31 +169,6 @@ void draw_links(const SceneView& view, std::size_t b, bool is_tinted, double hal
     }
 }
 
-/// Draws the bodies first <= b < end in one layer.
-void draw_bodies(const SceneView& view, std::size_t first, std::size_t end, const State& state,
-                 const Camera& camera, DrawList& list) {
-    const bool is_one = end - first == 1;
-    const bool is_tinted = view.scale || !is_one || !view.bodies[first].link_colors.empty();
-    list.add_layer(view.bodies[first].color, is_tinted);
-    const double outline_px = kOutlineWidth * view.side_px;
-    const auto inside_px = [&](const Ball& ball) { return ball.radius_px - 0.5 * outline_px; };
-    for (std::size_t b = first; b < end; ++b) {
-        // Only the background is behind the first body.
-        const double halo_per_radius = view.style.halo && first > 0 ? kHaloPerWidth * 2.0 : 0.0;
-        draw_links(view, b, is_tinted, halo_per_radius, state, camera, list);
-        for (const Ball& ball : view.bodies[b].balls) {
-            Tint tint = is_tinted ? tint_of(view, b, ball.link, state) : Tint{};
-            if (is_one) tint.weight = kBallWeight;
-            const PixelPoint at = camera.at(state, ball.particle);
-            list.add_capsule(at, at, inside_px(ball), halo_per_radius * view.bodies[b].radius_px, tint);
-        }
-    }
-    if (!is_one || view.bodies[first].balls.empty() || view.ball_count > kMaxOutlines) return;
-    list.add_layer(view.look.outline);
-    for (const Ball& ball : view.bodies[first].balls)
-        list.add_ring(camera.at(state, ball.particle), inside_px(ball), outline_px);
-}
-
 void draw_bars(const SceneView& view, bool real, const State& state, const Camera& camera, DrawList& list) {
     const double width_px = view.style.bar_width_px.value_or(
         std::max(kMinBarWidthPx, kBarWidthPerRopeWidth * view.rope_width_px));
@@ -370,6 +345,30 @@ void draw_trails(const SceneView& view, std::span<const Trail> trails, const Cam
     }
 }
 
+void draw_bodies(const SceneView& view, std::size_t first, std::size_t end, const State& state,
+                 const Camera& camera, DrawList& list) {
+    const bool is_one = end - first == 1;
+    const bool is_tinted = view.scale || !is_one || !view.bodies[first].link_colors.empty();
+    list.add_layer(view.bodies[first].color, is_tinted);
+    const double outline_px = kOutlineWidth * view.side_px;
+    const auto inside_px = [&](const Ball& ball) { return ball.radius_px - 0.5 * outline_px; };
+    for (std::size_t b = first; b < end; ++b) {
+        // Only the background is behind the first body.
+        const double halo_per_radius = view.style.halo && first > 0 ? kHaloPerWidth * 2.0 : 0.0;
+        draw_links(view, b, is_tinted, halo_per_radius, state, camera, list);
+        for (const Ball& ball : view.bodies[b].balls) {
+            Tint tint = is_tinted ? tint_of(view, b, ball.link, state) : Tint{};
+            if (is_one) tint.weight = kBallWeight;
+            const PixelPoint at = camera.at(state, ball.particle);
+            list.add_capsule(at, at, inside_px(ball), halo_per_radius * view.bodies[b].radius_px, tint);
+        }
+    }
+    if (!is_one || view.bodies[first].balls.empty() || view.ball_count > kMaxOutlines) return;
+    list.add_layer(view.look.outline);
+    for (const Ball& ball : view.bodies[first].balls)
+        list.add_ring(camera.at(state, ball.particle), inside_px(ball), outline_px);
+}
+
 void draw_pose(const SceneView& view, const State& state, const Camera& camera, DrawList& list) {
     if (view.style.bars == Bars::kAll) draw_bars(view, false, state, camera, list);
     // Sums of tints are exact up to 257 capsules in a pixel: two links and a ball of each body.
@@ -387,11 +386,6 @@ void draw_supports(const SceneView& view, const State& state, const Camera& came
     list.add_layer(view.look.support);
     view.supports.draw(camera, list);
     if (view.style.markers != Markers::kNone) draw_markers(view, true, state, camera, list);
-}
-
-void draw_body(const SceneView& view, std::size_t body, const State& state, const Camera& camera,
-               DrawList& list) {
-    draw_bodies(view, body, body + 1, state, camera, list);
 }
 
 }  // namespace corda::view

@@ -129,8 +129,8 @@ void draw_pose(const SceneView& view, const State& state, const Camera& camera, 
 /// Draws the supports, which never move; any `state` will do.
 void draw_supports(const SceneView& view, const State& state, const Camera& camera, DrawList& list);
 
-/// Draws the links and balls of one body.
-void draw_body(const SceneView& view, std::size_t body, const State& state, const Camera& camera,
-               DrawList& list);
+/// Draws the links and balls of bodies first <= b < end in one layer.
+void draw_bodies(const SceneView& view, std::size_t first, std::size_t end, const State& state,
+                 const Camera& camera, DrawList& list);
 
 }  // namespace corda::view

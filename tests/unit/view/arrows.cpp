@@ -83,7 +83,7 @@ TEST(Arrows, HaveTheLongestAtAShareOfThePicture) {
     extents.include(layer_of(system, Arrows::kVelocity).of(state_of(system)), false);
     EXPECT_EQ(extents.longest(), 5.0);
     const ArrowLayer layer = layer_of(system, Arrows::kVelocity, extents);
-    EXPECT_DOUBLE_EQ(layer.pixels_per_unit(), 0.22 * kShorterPx / 5.0);
+    EXPECT_DOUBLE_EQ(layer.scale().pixels_per_unit, 0.22 * kShorterPx / 5.0);
     DrawList list;
     list.width = list.height = static_cast<int>(kShorterPx);
     const CameraDef camera{Vec2{}, 4.0};

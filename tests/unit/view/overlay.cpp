@@ -21,7 +21,7 @@ DrawList drawn(const OverlayDef& def, const Caption& caption, int width, int hei
     DrawList list;
     list.width = width;
     list.height = height;
-    Overlay(def, style, width, height, kFrameS).draw(caption, pixels_per_metre, list);
+    draw(make_overlay(def, style, width, height, kFrameS), caption, pixels_per_metre, list);
     return list;
 }
 
@@ -84,7 +84,7 @@ TEST(Overlays, KeepTheirPlacesWhateverTheDuration) {
     EXPECT_LT(texts(9.5).back().x_px, texts(100.0).back().x_px);
     DrawList list;
     list.width = list.height = 400;
-    Overlay({}, {}, 400, 400, 1.0 / 1500.0).draw({0.25, {}, {}}, 100.0, list);
+    draw(make_overlay({}, {}, 400, 400, 1.0 / 1500.0), {0.25, {}, {}}, 100.0, list);
     EXPECT_EQ(list.texts[0].utf8, "t = 0.2500 s");
 }
 
@@ -93,12 +93,11 @@ TEST(Overlays, ShowEnergiesWithoutAnErrorInTheUnitOfTheScene) {
     def.scale_bar = false;
     def.energy = true;
     const auto text = [&](double kinetic_j, double potential_j, double scale_j) {
-        Overlay overlay(def, {}, 640, 360, 0.02);
-        overlay.set_energy_scale(scale_j);
+        const Overlay overlay = make_overlay(def, {}, 640, 360, 0.02, {.energy_scale_j = scale_j});
         DrawList list;
         list.width = 640;
         list.height = 360;
-        overlay.draw({1.0, {}, {}, {}, Energy{kinetic_j, potential_j, 0.0}}, 100.0, list);
+        draw(overlay, {1.0, {}, {}, {}, Energy{kinetic_j, potential_j, 0.0}}, 100.0, list);
         return list.texts.back().utf8;
     };
     EXPECT_EQ(text(1.2345, -0.5, 9.0), "kinetic 1.23 J, potential −0.50 J");
@@ -153,7 +152,7 @@ TEST(Overlays, AreNeverCutAndNeverMeet) {
         }
         EXPECT_TRUE(width < 640 || list.texts.size() == 5U) << list.texts.size();
         // What the camera fits is clear of them.
-        const Insets insets = Overlay(all, {}, width, height, kFrameS).insets();
+        const Insets insets = make_overlay(all, {}, width, height, kFrameS).insets;
         EXPECT_LE(insets.top_px + insets.bottom_px, 0.5 * height + 1e-9);
         if (height < 200) continue;
         for (const Stamp& stamp : list.stamps)
@@ -190,9 +189,7 @@ DrawList with_legend(const ColorScale& scale, OverlayDef def, int width, int hei
     list.height = height;
     def.time = def.scale_bar = false;
     def.legend = true;
-    Overlay overlay(def, by_tension(), width, height, kFrameS);
-    overlay.set_scale(scale);
-    overlay.draw({}, 100.0, list);
+    draw(make_overlay(def, by_tension(), width, height, kFrameS, {scale}), {}, 100.0, list);
     return list;
 }
 
@@ -227,7 +224,7 @@ TEST(Legends, StayInTheirFrameAndKeepClearOfTheTitle) {
         OverlayDef alone;
         alone.legend = true;
         alone.time = false;
-        const Insets insets = Overlay(alone, by_tension(), width, height, kFrameS).insets();
+        const Insets insets = make_overlay(alone, by_tension(), width, height, kFrameS).insets;
         for (std::size_t i = 1; i < 4; ++i) EXPECT_LE(font.ink(list.texts[i]).y1, insets.top_px) << width;
     }
 }
@@ -300,13 +297,12 @@ TEST(Methods, StandBelowALegendThatLeavesThemNoRoom) {
         DrawList list;
         list.width = width;
         list.height = 720;
-        Overlay overlay(def, by_tension(), width, 720, kFrameS);
-        overlay.set_scale(kilonewtons());
-        overlay.draw(caption, 100.0, list);
+        const Overlay overlay = make_overlay(def, by_tension(), width, 720, kFrameS, {kilonewtons()});
+        draw(overlay, caption, 100.0, list);
         ASSERT_EQ(list.texts.size(), 5U);
         EXPECT_EQ(list.texts[4].utf8, caption.method);
         EXPECT_EQ(Font().ink(list.texts[4]).y0 > Font().ink(list.texts[1]).y1, is_below);
-        EXPECT_GT(overlay.insets().top_px, list.texts[4].y_px);
+        EXPECT_GT(overlay.insets.top_px, list.texts[4].y_px);
     }
 }
 
@@ -314,9 +310,9 @@ TEST(Titles, OfSeveralLinesMoveThePictureDown) {
     OverlayDef def;
     def.time = def.scale_bar = false;
     def.title = "short";
-    const double one_px = Overlay(def, {}, 600, 600, kFrameS).insets().top_px;
+    const double one_px = make_overlay(def, {}, 600, 600, kFrameS).insets.top_px;
     def.title = "A double pendulum of two ropes, released from 60 degrees, at a quarter of its speed";
-    const Insets insets = Overlay(def, {}, 600, 600, kFrameS).insets();
+    const Insets insets = make_overlay(def, {}, 600, 600, kFrameS).insets;
     EXPECT_GT(insets.top_px, one_px);
     const DrawList list = drawn(def, {}, 600, 600);
     ASSERT_EQ(list.texts.size(), 2U);
@@ -378,23 +374,22 @@ TEST(Overlays, WrapLongTextsBesideThePlots) {
 }
 
 TEST(Labels, AreShortenedAndDoNotOverprint) {
-    Overlay overlay(bar_alone(), {}, 1000, 500, kFrameS);
     std::vector<BodyLabel> labels(2);
     labels[0].text.assign(200, 'x');
     labels[1].text = "8 kg";
     labels[1].row = 1;
     MotionBounds pin;
     pin.include(0.0, 0.0);
-    std::vector<Drawn> all;
-    overlay.set_labels(labels, std::vector{pin}, all);
+    const Overlay overlay = make_overlay(bar_alone(), {}, 1000, 500, kFrameS, {.labels = labels});
+    const std::vector<Drawn> all = drawn_labels(overlay.area, overlay.labels, std::vector{pin});
     EXPECT_LE(all[0].left_px + all[0].right_px, 300.0);
     EXPECT_GT(all[1].up_px, all[0].up_px);
     DrawList list;
     list.width = 1000;
     list.height = 500;
     Caption caption;
-    caption.labels.assign(2, {PixelPoint{500.0, 250.0}, PixelPoint{500.0, 250.0}});
-    overlay.draw(caption, 100.0, list);
+    caption.labels.assign(2, {{500.0, 250.0}, {500.0, 250.0}});
+    draw(overlay, caption, 100.0, list);
     EXPECT_TRUE(list.texts.at(0).utf8.ends_with("…"));
     EXPECT_EQ(list.texts.at(1).utf8, "8 kg");
     EXPECT_TRUE(Font().ink(list.texts[0]).intersected(Font().ink(list.texts[1])).empty());
@@ -404,19 +399,19 @@ TEST(TimesOfPoses, AreNearestToTheirOwnBalls) {
     std::vector<PoseTime> poses;
     for (int i = 0; i < 12; ++i) {
         const PixelPoint at{100.0 + 15.0 * i * i / 4.0, 200.0};
-        poses.push_back({{std::to_string(i), 0, 1, 12.0}, at, {at.x, 100.0}});
+        poses.push_back({{std::to_string(i), 0, 1, 12.0}, {at, {at.x, 100.0}}});
     }
     DrawList list;
     list.width = 800;
     list.height = 400;
-    Overlay({}, {}, 800, 400, kFrameS).draw_times(poses, list);
+    draw_times(make_overlay({}, {}, 800, 400, kFrameS).area, poses, list);
     EXPECT_GE(list.texts.size(), 4U);
     EXPECT_LT(list.texts.size(), 12U);
     for (const Text& text : list.texts) {
         const PixelRect ink = Font().ink(text);
         const auto distance = [&](const PoseTime& pose) {
-            return std::hypot(std::clamp<double>(pose.at.x, ink.x0, ink.x1) - pose.at.x,
-                              std::clamp<double>(pose.at.y, ink.y0, ink.y1) - pose.at.y);
+            return std::hypot(std::clamp<double>(pose.place.at.x, ink.x0, ink.x1) - pose.place.at.x,
+                              std::clamp<double>(pose.place.at.y, ink.y0, ink.y1) - pose.place.at.y);
         };
         for (const PoseTime& pose : poses) {
             EXPECT_GT(distance(pose), 12.0) << text.utf8;
@@ -430,7 +425,7 @@ TEST(Legends, AreLeftOutIfThereIsNoRoomOrNoScale) {
     OverlayDef def = bar_alone();
     def.scale_bar = false;
     EXPECT_TRUE(words(drawn(def, {}, 960, 540, 100.0, by_tension())).empty());
-    EXPECT_EQ(Overlay(def, {}, 960, 540, kFrameS).insets().top_px, 0.0);
+    EXPECT_EQ(make_overlay(def, {}, 960, 540, kFrameS).insets.top_px, 0.0);
 }
 
 TEST(Titles, OfAMegabyteAreShortenedAtOnce) {

@@ -314,15 +314,14 @@ TEST(PlotLayout, EveryPanelHasRoomForItsPlot) {
             OverlayDef def;
             def.time = def.scale_bar = false;
             def.plots.resize(count);
-            Overlay overlay(def, {}, width, height, 0.02);
             PlotData data = waves(123.4, -40.0);
             data.curves.push_back(data.curves.front());
             const std::vector<PlotData> all(count, data);
-            overlay.set_plots(all, {});
+            const Overlay overlay = make_overlay(def, {}, width, height, 0.02, {.plots = all});
             DrawList list;
             list.width = width;
             list.height = height;
-            overlay.draw({}, 100.0, list);
+            draw(overlay, {}, 100.0, list);
             const auto titles = std::count_if(list.texts.begin(), list.texts.end(),
                                               [](const Text& text) { return text.utf8 == "energy (J)"; });
             EXPECT_EQ(titles, lay_out_plots(count, width, height).panels.size()) << width << "x" << height;
@@ -357,10 +356,10 @@ TEST(PlotPanel, ShowsNothingOfTheScene) {
 TEST(PlotPanel, LeavesTheCameraTheRest) {
     OverlayDef def;
     def.plots = {LivePlot::kTip};
-    const Insets beside = Overlay(def, {}, 1280, 720, 0.02).insets();
+    const Insets beside = make_overlay(def, {}, 1280, 720, 0.02).insets;
     EXPECT_EQ(beside.right_panel_px, 461.0);
     EXPECT_EQ(beside.bottom_panel_px, 0.0);
-    const Insets below = Overlay(def, {}, 720, 1280, 0.02).insets();
+    const Insets below = make_overlay(def, {}, 720, 1280, 0.02).insets;
     EXPECT_EQ(below.right_panel_px, 0.0);
     EXPECT_EQ(below.bottom_panel_px, 461.0);
     MotionBounds bounds;

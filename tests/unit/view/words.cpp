@@ -66,15 +66,14 @@ TEST(Words, AreThoseOfTheOverlay) {
     def.language = Language::kGerman;
     StyleDef style;
     style.color_by = ColorBy::kTension;
-    Overlay overlay(def, style, 1280, 720, 0.02);
     ColorScale scale = scale_of(Quantity::kTension, {}, style);
     scale.high = 0.5;
-    overlay.set_scale(scale);
+    const Overlay overlay = make_overlay(def, style, 1280, 720, 0.02, {scale, {}, 3.0});
     const auto words = [&](const Caption& caption) {
         DrawList list;
         list.width = 1280;
         list.height = 720;
-        overlay.draw(caption, 700.0, list);
+        draw(overlay, caption, 700.0, list);
         std::string all;
         for (const Text& text : list.texts) all += text.utf8 + "|";
         return all;
@@ -83,7 +82,6 @@ TEST(Words, AreThoseOfTheOverlay) {
               "t = 1,25 s|20 cm|Energiefehler 3,1·10⁻¹²|Zugkraft (N)|0|0,25|0,5|");
     Caption caption{0.5, {}, {}};
     caption.energy = Energy{1.25, -0.5, 0.0};
-    overlay.set_energy_scale(3.0);
     EXPECT_NE(words(caption).find("|kinetisch 1,25 J, potenziell −0,50 J|"), std::string::npos);
 }
 
