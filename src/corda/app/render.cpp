@@ -123,7 +123,8 @@ void report_format(const Console& console, const Scene& scene, const CheckedOutp
                                     format.ending->codecs.front(), format.ending->text, format.codec->name,
                                     format.codec->standard));
     }
-    if (!view::look_of(scene.style).ground.is_opaque() && std::string_view(format.ending->muxer) == "gif")
+    if (!view::theme_colors(scene.style).ground.is_opaque() &&
+        std::string_view(format.ending->muxer) == "gif")
         console.warning("a GIF has no half transparent pixels: edges will be hard; .webm and .mov keep them");
 }
 

@@ -118,20 +118,20 @@ void check(const Film& film, const FigureDef& def) {
 }
 
 /// The colour between cells: the ground, slightly mixed with the colour of supports.
-Color gap_color(const view::Look& look) {
-    if (!look.ground.is_opaque()) return {0, 0, 0, 0};
+Color gap_color(const view::ThemeColors& colors) {
+    if (!colors.ground.is_opaque()) return {0, 0, 0, 0};
     const auto mixed = [](int ground, int line) {
         return static_cast<std::uint8_t>((5 * ground + line + 3) / 6);
     };
-    const Color& ground = look.ground.bottom;
-    return {mixed(ground.r, look.support.r), mixed(ground.g, look.support.g),
-            mixed(ground.b, look.support.b)};
+    const Color& ground = colors.ground.bottom;
+    return {mixed(ground.r, colors.support.r), mixed(ground.g, colors.support.g),
+            mixed(ground.b, colors.support.b)};
 }
 
 /// A contact sheet without the pictures in its cells.
 view::DrawList list_captions(const Film& film, const FigureDef& def) {
-    const view::Look look = view::look_of(film.scene().style);
-    const Color gap = gap_color(look);
+    const view::ThemeColors colors = view::theme_colors(film.scene().style);
+    const Color gap = gap_color(colors);
     const Sheet sheet = sheet_of(def);
     const VideoDef& video = film.scene().video;
     view::DrawList list;
@@ -156,7 +156,7 @@ view::DrawList list_captions(const Film& film, const FigureDef& def) {
             {.x_px = middle_px - font.width_px(captions[i], size_px) / 2,
              .y_px = bottom_px + static_cast<int>(0.5 * (sheet.caption_px() + kCapitalPerText * size_px)),
              .size_px = size_px,
-             .color = text_color(look),
+             .color = text_color(colors),
              .utf8 = captions[i]},
             list);
     }

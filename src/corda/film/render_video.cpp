@@ -29,7 +29,7 @@ namespace corda {
 namespace {
 
 bool is_opaque(const Scene& scene) {
-    return view::look_of(scene.style).ground.is_opaque();
+    return view::theme_colors(scene.style).ground.is_opaque();
 }
 
 /// What each picture of a sequence says, without the range of frames: it has the bytes of the still.
@@ -151,7 +151,7 @@ void write_frames(const Film& film, const media::CheckedVideo& video, const OnPr
 
 /// Refuses a transparent ground in a format without alpha, which would show it black.
 void check_ground(const Scene& scene, const media::Format& format) {
-    const Ground ground = view::look_of(scene.style).ground;
+    const Ground ground = view::theme_colors(scene.style).ground;
     if (ground.is_opaque() || format.has_alpha) return;
     const Color clear = ground.top.a < 255 ? ground.top : ground.bottom;
     const bool has_other = media::can_be_transparent(*format.ending);

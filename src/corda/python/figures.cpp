@@ -67,7 +67,7 @@ StyleDef style_in_print(const Scene& scene) {
 /// something else than bodies.
 std::vector<std::string> curve_colors(const Scene& scene, std::size_t count) {
     const StyleDef style = style_in_print(scene);
-    const std::vector<Color> palette = view::look_of(style).palette;
+    const std::vector<Color> palette = view::theme_colors(style).palette;
     std::vector<std::string> texts;
     std::size_t next = 0;
     for (std::size_t b = 0; b < count; ++b) {
@@ -277,7 +277,7 @@ py::dict facts(const PyFilm& film) {
     all["name"] = text_of(printable(scene.name).c_str());
     all["title"] = text_of(printable(scene.overlay.title).c_str());
     all["language"] = static_cast<int>(scene.overlay.language);
-    const Ground ground = view::look_of(style_in_print(scene)).ground;
+    const Ground ground = view::theme_colors(style_in_print(scene)).ground;
     all["is_on_white"] = !shows_on_white(ground.top) && !shows_on_white(ground.bottom);
     all["simulation_passes"] = shown.plan().simulation_passes;
     return all;

@@ -10,7 +10,7 @@ namespace {
 
 /// The colours of M. Okabe and K. Ito, Color Universal Design (2008), that stand out from a dark ground, and
 /// white.
-Look dark() {
+ThemeColors dark() {
     return {.ground = {{0x0e, 0x13, 0x20}, {0x1b, 0x24, 0x38}},
             .palette = {{0xe6, 0x9f, 0x00},
                         {0x56, 0xb4, 0xe9},
@@ -27,7 +27,7 @@ Look dark() {
 }
 
 /// Those of the same colours that stand out from white, the purple darkened, with black and a grey.
-Look paper() {
+ThemeColors paper() {
     return {.ground = {{0xff, 0xff, 0xff}, {0xff, 0xff, 0xff}},
             .palette = {{0x00, 0x72, 0xb2},
                         {0xd5, 0x5e, 0x00},
@@ -80,7 +80,7 @@ constexpr double kMinStrain = 1e-9;
 
 /// True if the background is light.
 bool is_light(const StyleDef& style) {
-    const Color text = text_color(look_of(style));
+    const Color text = text_color(theme_colors(style));
     return text.g < 128;
 }
 
@@ -98,24 +98,24 @@ double rounded_end(double value) {
     return 10.0 * power / inverse;
 }
 
-Look look_of(const StyleDef& style) {
-    Look look = style.theme == Theme::kPaper ? paper() : dark();
-    if (style.background) look.ground = *style.background;
-    if (!style.palette.empty()) look.palette = style.palette;
-    look.pinned = style.pinned_color.value_or(look.pinned);
-    look.free = style.free_color.value_or(look.free);
-    look.real_bar = style.real_bar_color.value_or(look.real_bar);
-    look.imaginary_bar = style.imaginary_bar_color.value_or(look.imaginary_bar);
-    return look;
+ThemeColors theme_colors(const StyleDef& style) {
+    ThemeColors theme = style.theme == Theme::kPaper ? paper() : dark();
+    if (style.background) theme.ground = *style.background;
+    if (!style.palette.empty()) theme.palette = style.palette;
+    theme.pinned = style.pinned_color.value_or(theme.pinned);
+    theme.free = style.free_color.value_or(theme.free);
+    theme.real_bar = style.real_bar_color.value_or(theme.real_bar);
+    theme.imaginary_bar = style.imaginary_bar_color.value_or(theme.imaginary_bar);
+    return theme;
 }
 
-Color text_color(const Look& look) {
-    if (!look.ground.is_opaque()) return look.outline;
+Color text_color(const ThemeColors& theme) {
+    if (!theme.ground.is_opaque()) return theme.outline;
     const auto lightness = [](const Color& c) {
         return 299 * c.r + 587 * c.g + 114 * c.b;
     };  // Y', thousandths
     constexpr int kMiddle = 128'000;
-    const bool is_light = lightness(look.ground.top) + lightness(look.ground.bottom) > 2 * kMiddle;
+    const bool is_light = lightness(theme.ground.top) + lightness(theme.ground.bottom) > 2 * kMiddle;
     return is_light ? Color{0x2a, 0x2f, 0x3a} : Color{0xd5, 0xdb, 0xe6};
 }
 
@@ -141,7 +141,7 @@ Color ColorScale::color(double value) const {
 ColorScale scale_of(Quantity quantity, const sim::Histogram& histogram, const StyleDef& style) {
     ColorScale scale;
     scale.quantity = quantity;
-    scale.unknown = look_of(style).support;
+    scale.unknown = theme_colors(style).support;
     double end = 1.0;
     const double smallest = quantity == Quantity::kStrain ? kMinStrain : kMinEnd;
     if (!histogram.empty() && std::max(-histogram.least(), histogram.largest()) > smallest) {

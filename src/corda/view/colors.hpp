@@ -10,7 +10,7 @@
 namespace corda::view {
 
 /// Colours of a scene: from its style, otherwise from its theme.
-struct Look {
+struct ThemeColors {
     Ground ground;
     std::vector<Color> palette;
     Color support;  ///< plates and rings, which do not move
@@ -21,13 +21,13 @@ struct Look {
     Color imaginary_bar;
 };
 
-[[nodiscard]] Look look_of(const StyleDef& style);
+[[nodiscard]] ThemeColors theme_colors(const StyleDef& style);
 
 /// Opacity of pose `k` of `count` in one picture: 1 for the last one, decreasing with age.
 [[nodiscard]] double pose_opacity(std::size_t k, std::size_t count);
 
 /// A colour that can be read on the background; on a transparent background, the theme's.
-[[nodiscard]] Color text_color(const Look& look);
+[[nodiscard]] Color text_color(const ThemeColors& colors);
 
 /// A colour of arrows that stands out from the background.
 [[nodiscard]] Color arrow_color(const StyleDef& style);

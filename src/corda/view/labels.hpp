@@ -35,6 +35,7 @@ struct LabelPlace {
     PixelPoint from;
 };
 
+/// The places of labels in the picture of a state.
 [[nodiscard]] std::vector<LabelPlace> places_of(std::span<const BodyLabel> labels, const State& state,
                                                 const Camera& camera);
 
@@ -45,6 +46,7 @@ struct LabelPlace {
 [[nodiscard]] std::vector<Drawn> drawn_labels(const TextArea& area, std::span<const BodyLabel> labels,
                                               std::span<const MotionBounds> bounds);
 
+/// Adds a label; one far outside the frame is left out.
 void draw_label(const TextArea& area, const BodyLabel& label, const LabelPlace& place, DrawList& list);
 
 /// A pose among several in one picture.

@@ -22,9 +22,10 @@ struct ColorLegend {
 /// Baseline of its numbers.
 [[nodiscard]] int legend_baseline_px(const TextArea& area);
 
-/// std::nullopt if there is no room.
+/// Lays a legend out; std::nullopt if there is no room.
 [[nodiscard]] std::optional<ColorLegend> make_color_legend(const TextArea& area, const ColorScale& scale);
 
+/// Adds the legend as stamps.
 void draw_legend(const TextArea& area, const ColorLegend& legend, DrawList& list);
 
 /// The legend of arrows at the lower right: a size, "2 m/s", and its arrow.
@@ -36,7 +37,7 @@ struct ArrowLegend {
     bool is_cut = false;  ///< some arrows are larger
 };
 
-/// std::nullopt without arrows, or if there is no room from `begin_px` on.
+/// Lays a legend out; std::nullopt without arrows, or if there is no room from `begin_px` on.
 [[nodiscard]] std::optional<ArrowLegend> make_arrow_legend(const TextArea& area, const StyleDef& style,
                                                            const ArrowScale& scale, int begin_px);
 

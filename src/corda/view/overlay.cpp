@@ -146,14 +146,14 @@ std::string time_label(const std::string& digits, Language language) {
 Overlay make_overlay(const OverlayDef& def, const StyleDef& style, int width_px, int height_px,
                      double interval_s, const OverlayData& data) {
     const PlotLayout layout = lay_out_plots(def.plots.size(), width_px, height_px);
-    const Look look = look_of(style);
+    const ThemeColors colors = theme_colors(style);
     const int side_px = std::min(width_px, height_px);
     const int em_px = def.text_px ? rounded(*def.text_px) : em_of(width_px, height_px);
     Overlay overlay{def,
                     {layout.width_px, layout.height_px, side_px, em_px, edge_of(side_px, em_px),
-                     text_color(look), def.language, Font(), Font(def.font)}};
+                     text_color(colors), def.language, Font(), Font(def.font)}};
     const TextArea& area = overlay.area;
-    const bool by_default = side_px >= kMinSidePx && look.ground.is_opaque();
+    const bool by_default = side_px >= kMinSidePx && colors.ground.is_opaque();
     overlay.has_time = def.time.value_or(by_default);
     overlay.has_scale_bar = def.scale_bar.value_or(by_default);
     while (overlay.time_decimals < kMaxDecimals && interval_s * power_of_10(overlay.time_decimals) < 1.0)

@@ -33,7 +33,7 @@ struct Heading {
     double bottom_px = 0.0;  ///< where the free space below begins; 0 if there is no heading
 };
 
-/// `beside_end_px`: where the room next to the legend ends.
+/// Breaks and shortens the title. `beside_end_px`: where the room next to the legend ends.
 [[nodiscard]] Heading make_heading(const TextArea& area, const OverlayDef& def, int beside_end_px);
 
 /// Adds a text in the picture, in several lines if it is long.

@@ -121,11 +121,11 @@ PlotPanel::PlotPanel(const StyleDef& style, int width_px, int height_px, const P
     plot_.em_px = em_px;
     edge_px_ = edge_of(side_px, em_px);
     plot_.line_px = std::max(1, rounded(kBoxLineWidth * side_px));
-    text_color_ = text_color(look_of(style));
+    text_color_ = text_color(theme_colors(style));
     // The theme's: those of a style are for its bodies.
     StyleDef plain;
     plain.theme = style.theme;
-    palette_ = look_of(plain).palette;
+    palette_ = theme_colors(plain).palette;
 }
 
 void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_colors, int least_label_px,

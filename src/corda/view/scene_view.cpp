@@ -172,7 +172,7 @@ void draw_links(const SceneView& view, std::size_t b, bool is_tinted, double hal
 void draw_bars(const SceneView& view, bool real, const State& state, const Camera& camera, DrawList& list) {
     const double width_px = view.style.bar_width_px.value_or(
         std::max(kMinBarWidthPx, kBarWidthPerRopeWidth * view.rope_width_px));
-    list.add_layer(real ? view.look.real_bar : view.look.imaginary_bar);
+    list.add_layer(real ? view.colors.real_bar : view.colors.imaginary_bar);
     for (const Bar& bar : view.system->bars) {
         if ((bar.reach == 1) == real)
             list.add_capsule(camera.at(state, bar.a), camera.at(state, bar.b), 0.5 * width_px);
@@ -181,7 +181,7 @@ void draw_bars(const SceneView& view, bool real, const State& state, const Camer
 
 void draw_markers(const SceneView& view, bool pinned, const State& state, const Camera& camera,
                   DrawList& list) {
-    list.add_layer(pinned ? view.look.pinned : view.look.free);
+    list.add_layer(pinned ? view.colors.pinned : view.colors.free);
     for (std::size_t b = 0; b < view.bodies.size(); ++b) {
         const Body& body = view.system->bodies[b];
         const double radius_px =
@@ -241,7 +241,7 @@ SceneView make_scene_view(const System& system, Vec2 gravity_m_s2, const StyleDe
     SceneView view{&system,
                    gravity_m_s2,
                    style,
-                   look_of(style),
+                   theme_colors(style),
                    width_px,
                    height_px,
                    side_px,
@@ -260,9 +260,9 @@ SceneView make_scene_view(const System& system, Vec2 gravity_m_s2, const StyleDe
             return style.marker_radius_px.value_or(0.5 * body_px + rim * side_px);
         };
         const bool by_link = style.color_by == ColorBy::kLink && !own.link_colors.empty();
-        Color color = by_link ? own.link_colors.front() : own.color.value_or(view.look.support);
+        Color color = by_link ? own.link_colors.front() : own.color.value_or(view.colors.support);
         if (!by_link && !own.color && !quantity_of(style.color_by))
-            color = view.look.palette[next_color++ % view.look.palette.size()];
+            color = view.colors.palette[next_color++ % view.colors.palette.size()];
         BodyView& drawn = view.bodies.emplace_back(
             BodyView{color, by_link ? own.link_colors : std::vector<Color>{}, 0.5 * body_px, 0.5 * end_px,
                      marker_px(kPinnedRim), marker_px(kFreeRim), i > 0 && own.merged, own.label_at});
@@ -317,7 +317,7 @@ void draw(const SceneView& view, const State& state, const Camera& camera, DrawL
 void start(const SceneView& view, DrawList& list) {
     list.width = view.width_px;
     list.height = view.height_px;
-    list.ground = view.look.ground;
+    list.ground = view.colors.ground;
     list.clear();
 }
 
@@ -364,7 +364,7 @@ void draw_bodies(const SceneView& view, std::size_t first, std::size_t end, cons
         }
     }
     if (!is_one || view.bodies[first].balls.empty() || view.ball_count > kMaxOutlines) return;
-    list.add_layer(view.look.outline);
+    list.add_layer(view.colors.outline);
     for (const Ball& ball : view.bodies[first].balls)
         list.add_ring(camera.at(state, ball.particle), inside_px(ball), outline_px);
 }
@@ -383,7 +383,7 @@ void draw_pose(const SceneView& view, const State& state, const Camera& camera, 
 }
 
 void draw_supports(const SceneView& view, const State& state, const Camera& camera, DrawList& list) {
-    list.add_layer(view.look.support);
+    list.add_layer(view.colors.support);
     view.supports.draw(camera, list);
     if (view.style.markers != Markers::kNone) draw_markers(view, true, state, camera, list);
 }

@@ -64,6 +64,7 @@ struct WholeMotion {
     ArrowExtents arrows = {};  ///< set the scale of arrows; without extents there are none
 };
 
+/// A payload, or a mass of a pendulum.
 struct Ball {
     std::size_t particle = 0;
     std::size_t link = 0;  ///< a link that ends there
@@ -91,7 +92,7 @@ struct SceneView {
     const System* system;
     Vec2 gravity_m_s2;
     StyleDef style;
-    Look look;
+    ThemeColors colors;
     int width_px;
     int height_px;
     double side_px;  ///< the shorter one
@@ -115,6 +116,7 @@ struct SceneView {
 /// The same without supports and arrows.
 [[nodiscard]] std::vector<Drawn> drawn_bodies(const SceneView& view, std::span<const MotionBounds> bounds);
 
+/// The colour of each body, of its first link if links differ.
 [[nodiscard]] std::vector<Color> body_colors(const SceneView& view);
 
 /// Writes the frame of `state` to `list`, with a trail for each traced particle, or none. Memory that `list`

@@ -133,10 +133,10 @@ double contrast(const Color& a, const Color& b) {
     return (high + 0.05) / (low + 0.05);
 }
 
-Look look_of_theme(Theme theme) {
+ThemeColors colors_of_theme(Theme theme) {
     StyleDef style;
     style.theme = theme;
-    return look_of(style);
+    return theme_colors(style);
 }
 
 TEST(ColourDistance, IsThatOfThePublishedPairs) {
@@ -148,15 +148,15 @@ TEST(ColourDistance, IsThatOfThePublishedPairs) {
 }
 
 TEST(Palettes, HaveColoursThatTheColourBlindTellApart) {
-    EXPECT_GT(least_distance(look_of_theme(Theme::kDark).palette), 11.0);   // measured 11.6
-    EXPECT_GT(least_distance(look_of_theme(Theme::kPaper).palette), 11.0);  // measured 11.6;
+    EXPECT_GT(least_distance(colors_of_theme(Theme::kDark).palette), 11.0);   // measured 11.6
+    EXPECT_GT(least_distance(colors_of_theme(Theme::kPaper).palette), 11.0);  // measured 11.6;
 }
 
 TEST(Palettes, StandOutFromTheGround) {
     for (const Theme theme : {Theme::kDark, Theme::kPaper}) {
-        const Look look = look_of_theme(theme);
-        for (const Color& color : look.palette) {
-            for (const Color& ground : {look.ground.top, look.ground.bottom}) {
+        const ThemeColors colors = colors_of_theme(theme);
+        for (const Color& color : colors.palette) {
+            for (const Color& ground : {colors.ground.top, colors.ground.bottom}) {
                 EXPECT_GE(contrast(color, ground), 3.1) << color.text();  // measured 4.5 and 3.13
             }
         }
@@ -165,10 +165,11 @@ TEST(Palettes, StandOutFromTheGround) {
 
 TEST(Palettes, HaveNotTheColourOfSupports) {
     for (const Theme theme : {Theme::kDark, Theme::kPaper}) {
-        const Look look = look_of_theme(theme);
-        for (const Color& color : look.palette)
-            EXPECT_GT(distance_as_seen(color, look.support, kNormal), 15.0) << color.text();  // measured 17.3
-        EXPECT_GT(contrast(look.support, look.ground.bottom), 4.5);                           // measured 5.0
+        const ThemeColors colors = colors_of_theme(theme);
+        for (const Color& color : colors.palette)
+            EXPECT_GT(distance_as_seen(color, colors.support, kNormal), 15.0)
+                << color.text();                                         // measured 17.3
+        EXPECT_GT(contrast(colors.support, colors.ground.bottom), 4.5);  // measured 5.0
     }
 }
 
@@ -188,7 +189,7 @@ std::vector<Color> colors_of_scale(Theme theme, bool is_about_zero) {
 
 TEST(ScaleColours, StandOutFromTheGround) {
     for (const Theme theme : {Theme::kDark, Theme::kPaper}) {
-        const Ground ground = look_of_theme(theme).ground;
+        const Ground ground = colors_of_theme(theme).ground;
         for (const bool is_about_zero : {false, true}) {
             for (const Color& color : colors_of_scale(theme, is_about_zero)) {
                 // Measured 3.9 on the dark ground, 3.79 on paper.
@@ -226,15 +227,15 @@ TEST(ScaleColours, DistinguishSignsForTheColourBlind) {
 TEST(Looks, OverrideTheThemeByTheStyle) {
     StyleDef style;
     style.theme = Theme::kPaper;
-    EXPECT_EQ(look_of(style).ground, (Ground{{255, 255, 255}, {255, 255, 255}}));
+    EXPECT_EQ(theme_colors(style).ground, (Ground{{255, 255, 255}, {255, 255, 255}}));
     style.background = Ground{{1, 2, 3}, {4, 5, 6}};
     style.palette = {{7, 8, 9}};
     style.pinned_color = Color{10, 11, 12};
-    const Look look = look_of(style);
-    EXPECT_EQ(look.ground, *style.background);
-    EXPECT_EQ(look.palette, style.palette);
-    EXPECT_EQ(look.pinned, *style.pinned_color);
-    EXPECT_EQ(look.free, look_of_theme(Theme::kPaper).free);
+    const ThemeColors colors = theme_colors(style);
+    EXPECT_EQ(colors.ground, *style.background);
+    EXPECT_EQ(colors.palette, style.palette);
+    EXPECT_EQ(colors.pinned, *style.pinned_color);
+    EXPECT_EQ(colors.free, colors_of_theme(Theme::kPaper).free);
 }
 
 sim::Histogram histogram_of(std::initializer_list<double> values) {
@@ -286,7 +287,7 @@ TEST(ColorScale, IsCutWhereFewValuesLieFarBeyond) {
 
 TEST(ColorScale, HasAColourForUnknownValues) {
     const ColorScale one = scale({1.0});
-    EXPECT_EQ(one.color(std::nan("")), look_of({}).support);
+    EXPECT_EQ(one.color(std::nan("")), theme_colors({}).support);
     EXPECT_EQ(one.color(-5.0), one.colors.front());
     EXPECT_EQ(one.color(1.0), one.colors.back());
     EXPECT_EQ(one.color(0.5), one.colors[4]);

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -370,53 +369,6 @@ TEST(Overlays, WrapLongTextsBesideThePlots) {
         }
         def.texts[0].at = {0.9, 0.9};  // over the plot on purpose
         EXPECT_LT(drawn(def, {1.0, {}, {}}, 2 * width, 2 * height).texts.size(), 3U);
-    }
-}
-
-TEST(Labels, AreShortenedAndDoNotOverprint) {
-    std::vector<BodyLabel> labels(2);
-    labels[0].text.assign(200, 'x');
-    labels[1].text = "8 kg";
-    labels[1].row = 1;
-    MotionBounds pin;
-    pin.include(0.0, 0.0);
-    const Overlay overlay = make_overlay(bar_alone(), {}, 1000, 500, kFrameS, {.labels = labels});
-    const std::vector<Drawn> all = drawn_labels(overlay.area, overlay.labels, std::vector{pin});
-    EXPECT_LE(all[0].left_px + all[0].right_px, 300.0);
-    EXPECT_GT(all[1].up_px, all[0].up_px);
-    DrawList list;
-    list.width = 1000;
-    list.height = 500;
-    Caption caption;
-    caption.labels.assign(2, {{500.0, 250.0}, {500.0, 250.0}});
-    draw(overlay, caption, 100.0, list);
-    EXPECT_TRUE(list.texts.at(0).utf8.ends_with("…"));
-    EXPECT_EQ(list.texts.at(1).utf8, "8 kg");
-    EXPECT_TRUE(Font().ink(list.texts[0]).intersected(Font().ink(list.texts[1])).empty());
-}
-
-TEST(TimesOfPoses, AreNearestToTheirOwnBalls) {
-    std::vector<PoseTime> poses;
-    for (int i = 0; i < 12; ++i) {
-        const PixelPoint at{100.0 + 15.0 * i * i / 4.0, 200.0};
-        poses.push_back({{std::to_string(i), 0, 1, 12.0}, {at, {at.x, 100.0}}});
-    }
-    DrawList list;
-    list.width = 800;
-    list.height = 400;
-    draw_times(make_overlay({}, {}, 800, 400, kFrameS).area, poses, list);
-    EXPECT_GE(list.texts.size(), 4U);
-    EXPECT_LT(list.texts.size(), 12U);
-    for (const Text& text : list.texts) {
-        const PixelRect ink = Font().ink(text);
-        const auto distance = [&](const PoseTime& pose) {
-            return std::hypot(std::clamp<double>(pose.place.at.x, ink.x0, ink.x1) - pose.place.at.x,
-                              std::clamp<double>(pose.place.at.y, ink.y0, ink.y1) - pose.place.at.y);
-        };
-        for (const PoseTime& pose : poses) {
-            EXPECT_GT(distance(pose), 12.0) << text.utf8;
-            EXPECT_LE(distance(poses[std::stoul(text.utf8)]), distance(pose)) << text.utf8;
-        }
     }
 }
 

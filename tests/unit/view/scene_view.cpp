@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "benchmark/study/reference/ropes.hpp"
-#include "corda/view/labels.hpp"
 #include "support/draw_list_of.hpp"
 #include "support/draw_lists.hpp"
 
@@ -52,46 +51,6 @@ TEST(SceneView, APlainRopeIsOneLayerOfItsLinks) {
     EXPECT_EQ(list.layers[0].capsule_count, 5U);
     EXPECT_EQ(list.capsules[0].radius, 2.0F);
     EXPECT_EQ(list.capsules[0].halo_radius, 0.0F);
-}
-
-/// The labels of ropes at their start.
-std::vector<BodyLabel> labels_of(const std::vector<RopeDef>& ropes, const std::vector<std::string>& names,
-                                 const std::vector<BodyStyleDef>& styles = {}) {
-    System system = build_system(ropes);
-    for (std::size_t i = 0; i < names.size(); ++i) system.bodies[i].label = names[i];
-    return body_labels(make_scene_view(system, {0.0, -9.81}, {}, styles, kWidth, kHeight));
-}
-
-TEST(SceneView, ALabelIsAboveItsPinOrAtItsFreeEnd) {
-    RopeDef rope = reference::straight_rope(3, 1.0, 30.0);
-    RopeDef apart = rope;
-    apart.origin_m = {1.0, 0.0};
-    EXPECT_TRUE(labels_of({rope}, {""}).empty());
-    const auto at_pins = labels_of({rope, apart}, {"a", "b"});
-    ASSERT_EQ(at_pins.size(), 2U);
-    EXPECT_EQ(at_pins[1].text, "b");
-    EXPECT_EQ(at_pins[1].particle, 4U);
-    EXPECT_EQ(at_pins[1].from, 4U);
-    // A pin that another labelled body shares has no room; that of one without a label has.
-    const auto at_ends = labels_of({rope, rope, rope}, {"a", "b", ""});
-    EXPECT_EQ(at_ends[1].particle, 7U);
-    EXPECT_EQ(at_ends[1].from, 6U);
-    EXPECT_EQ(labels_of({rope, rope}, {"a", ""})[0].particle, 0U);
-    // Where styles say; in rows above one pin.
-    std::vector<BodyStyleDef> styles(2);
-    styles[0].label_at = LabelAt::kEnd;
-    EXPECT_EQ(labels_of({rope}, {"8 kg"}, styles)[0].particle, 3U);
-    const auto apart_at_one_pin = labels_of({rope, rope}, {"a", "b"}, styles);
-    EXPECT_EQ(apart_at_one_pin[1].particle, 4U);
-    EXPECT_EQ(apart_at_one_pin[1].row, 0);
-    styles[0].label_at = styles[1].label_at = LabelAt::kPin;
-    const auto in_rows = labels_of({rope, rope}, {"a", "b"}, styles);
-    EXPECT_EQ(in_rows[0].particle, 0U);
-    EXPECT_EQ(in_rows[0].row, 0);
-    EXPECT_EQ(in_rows[1].particle, 4U);
-    EXPECT_EQ(in_rows[1].row, 1);
-    rope.pinned = {};
-    EXPECT_EQ(labels_of({rope}, {"free"})[0].particle, 3U);
 }
 
 TEST(SceneView, MergedBodiesAreOneTintedLayerInAGradient) {
@@ -172,7 +131,7 @@ TEST(SceneView, APayloadIsABallThatGrowsWithItsMass) {
         // To the middle of the outline, which is a quarter of a pixel wide.
         EXPECT_FLOAT_EQ(ball.radius, std::max(radius, 3.2F) - 0.125F) << mass_kg;
         EXPECT_EQ(ball.length, 0.0F);
-        EXPECT_EQ(list.layers[1].color, look_of(style).outline);
+        EXPECT_EQ(list.layers[1].color, theme_colors(style).outline);
     }
     style.payload = false;
     EXPECT_EQ(draw({rope}, style).layers.size(), 1U);
@@ -219,13 +178,13 @@ TEST(SceneView, BarsAndMarkersHaveLayersOfTheirOwn) {
     style.bars = Bars::kAll;
     const DrawList list = draw({reference::straight_rope(5, 1.0, 30.0)}, style);
     ASSERT_EQ(list.layers.size(), 5U);
-    EXPECT_EQ(list.layers[0].color, look_of(style).imaginary_bar);
+    EXPECT_EQ(list.layers[0].color, theme_colors(style).imaginary_bar);
     EXPECT_EQ(list.layers[0].capsule_count, 4U + 3U);  // reach 2 and 3 among 6 particles
-    EXPECT_EQ(list.layers[2].color, look_of(style).real_bar);
+    EXPECT_EQ(list.layers[2].color, theme_colors(style).real_bar);
     EXPECT_EQ(list.layers[2].capsule_count, 5U);
     EXPECT_EQ(list.layers[3].capsule_count, 5U);  // free particles
     EXPECT_EQ(list.layers[4].capsule_count, 1U);  // the pinned one on top
-    EXPECT_EQ(list.layers[4].color, look_of(style).pinned);
+    EXPECT_EQ(list.layers[4].color, theme_colors(style).pinned);
 }
 
 /// A unit square of four particles with one imaginary bar across it.
@@ -257,9 +216,9 @@ TEST(SceneView, NetsTakeThePaletteAfterTheRopes) {
     const StyleDef style = plain();
     const DrawList list = draw({reference::straight_rope(3, 1.0, 30.0)}, style, {}, {square_net()});
     ASSERT_EQ(list.layers.size(), 2U);
-    EXPECT_EQ(list.layers[0].color, look_of(style).palette[0]);
+    EXPECT_EQ(list.layers[0].color, theme_colors(style).palette[0]);
     EXPECT_EQ(list.layers[0].capsule_count, 3U);
-    EXPECT_EQ(list.layers[1].color, look_of(style).palette[1]);
+    EXPECT_EQ(list.layers[1].color, theme_colors(style).palette[1]);
     EXPECT_EQ(list.layers[1].capsule_count, 4U);
 }
 
@@ -269,9 +228,9 @@ TEST(SceneView, ANetHasItsBarsAndMarkersInTheCommonLayers) {
     style.bars = Bars::kAll;
     const DrawList list = draw({}, style, {}, {square_net()});
     ASSERT_EQ(list.layers.size(), 5U);
-    EXPECT_EQ(list.layers[0].color, look_of(style).imaginary_bar);
+    EXPECT_EQ(list.layers[0].color, theme_colors(style).imaginary_bar);
     EXPECT_EQ(list.layers[0].capsule_count, 1U);
-    EXPECT_EQ(list.layers[2].color, look_of(style).real_bar);
+    EXPECT_EQ(list.layers[2].color, theme_colors(style).real_bar);
     EXPECT_EQ(list.layers[2].capsule_count, 4U);
     EXPECT_EQ(list.layers[3].capsule_count, 2U);
     EXPECT_EQ(list.layers[4].capsule_count, 2U);
@@ -337,7 +296,7 @@ TEST(SceneView, LinksTakeTheColoursOfAListInTurnAndABallThatOfItsLink) {
     for (std::size_t k = 0; k < 5; ++k) EXPECT_EQ(list.capsules[k].tint.r, k % 2 == 0 ? 1 : 4) << k;
     EXPECT_EQ(list.capsules[5].tint, (Tint{1, 2, 3, 64}));  // the ball on the fifth link
     EXPECT_FALSE(list.layers[2].is_tinted);
-    EXPECT_EQ(list.layers[2].color, look_of(style).palette[0]);
+    EXPECT_EQ(list.layers[2].color, theme_colors(style).palette[0]);
     EXPECT_TRUE(list.layers[4].is_tinted);
     EXPECT_EQ(list.capsules[list.layers[4].first_capsule + 1].tint.r, 4);
 }
