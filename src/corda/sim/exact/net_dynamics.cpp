@@ -384,7 +384,7 @@ void NetDynamics::tensions(const double* y, std::vector<double>& tension_n) {
     motion.x_m = state_.x_m;
     motion.y_m = state_.y_m;
     velocities(y, motion.vx_m_s, motion.vy_m_s);
-    std::vector<double> load = constraints_->loads(motion, forces_.uniform_m_s2());
+    std::vector<double> load = loads(constraints_->bars(), motion, forces_.uniform_m_s2());
     if (!constraints_->solve(motion, load) || !constraints_->had_full_rank()) return;
     std::size_t link = 0;
     for (std::size_t k = 0; k < system_.bars.size(); ++k) {

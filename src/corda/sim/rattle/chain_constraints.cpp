@@ -31,13 +31,12 @@ bool ChainConstraints::suits(std::span<const Bar> bars) {
     return true;
 }
 
-ChainConstraints::ChainConstraints(const System& system)
-    : ConstraintSolver(system, system.inverse_mass_1_kg) {
+ChainConstraints::ChainConstraints(const System& system) : bars_(system, system.inverse_mass_1_kg) {
     assert(suits(rigid_bars(system)));
     std::size_t longest = 0;
-    for (std::size_t k = 0; k < links_.size(); ++k) {
-        const Link& link = links_[k];
-        const bool goes_on = k > 0 && links_[k - 1].b == link.a && !system.is_pinned(link.a);
+    for (std::size_t k = 0; k < bars_.links.size(); ++k) {
+        const Link& link = bars_.links[k];
+        const bool goes_on = k > 0 && bars_.links[k - 1].b == link.a && !system.is_pinned(link.a);
         if (!goes_on) chains_.push_back({link.a, k, 0});
         square_m2_.push_back(link.rest_m * link.rest_m);
         longest = std::max(longest, ++chains_.back().count);
@@ -94,7 +93,7 @@ void ChainConstraints::bar_vectors(const Chain& chain, const Motion& motion) {
 void ChainConstraints::assemble(const Chain& chain, double span_s, const Motion& motion) {
     const double* const vx = motion.vx_m_s.data() + chain.first_particle;
     const double* const vy = motion.vy_m_s.data() + chain.first_particle;
-    const double* const w = inverse_mass_1_kg_.data() + chain.first_particle;
+    const double* const w = bars_.inverse_mass_1_kg.data() + chain.first_particle;
     const double* const square = square_m2_.data() + chain.first_link;
     const double* const dx = dx_m_.data();
     const double* const dy = dy_m_.data();
@@ -113,7 +112,7 @@ void ChainConstraints::assemble(const Chain& chain, double span_s, const Motion&
 bool ChainConstraints::apply(const Chain& chain, double span_s, const double* impulse, Motion& motion) {
     double* __restrict const vx = motion.vx_m_s.data() + chain.first_particle;
     double* __restrict const vy = motion.vy_m_s.data() + chain.first_particle;
-    const double* const w = inverse_mass_1_kg_.data() + chain.first_particle;
+    const double* const w = bars_.inverse_mass_1_kg.data() + chain.first_particle;
     const double* const square = square_m2_.data() + chain.first_link;
     const double* const dx = dx_m_.data();
     const double* const dy = dy_m_.data();
@@ -188,7 +187,7 @@ void ChainConstraints::add_total(const Chain& chain, Motion& motion) const {
 }
 
 bool ChainConstraints::move(const Stage& stage, Motion& motion, std::span<double> impulse) {
-    kick(stage, motion);
+    kick(bars_, stage, motion);
     count_work(1 + motion.x_m.size());
     for (const Chain& chain : chains_) {
         if (!meet_lengths(chain, stage.span_s, motion, impulse.data() + chain.first_link)) return false;
@@ -201,7 +200,7 @@ bool ChainConstraints::solve(const Motion& motion, std::span<double> right) {
     count_work(1 + motion.x_m.size());
     bool is_finite = true;
     for (const Chain& chain : chains_) {
-        const double* const w = inverse_mass_1_kg_.data() + chain.first_particle;
+        const double* const w = bars_.inverse_mass_1_kg.data() + chain.first_particle;
         bar_vectors(chain, motion);
         const double* const dx = dx_m_.data();
         const double* const dy = dy_m_.data();
@@ -224,7 +223,7 @@ bool ChainConstraints::solve(const Motion& motion, std::span<double> right) {
 double ChainConstraints::square_frequency(std::span<const double> multiplier) const {
     double largest = 0.0;
     for (const Chain& chain : chains_) {
-        const double* const w = inverse_mass_1_kg_.data() + chain.first_particle;
+        const double* const w = bars_.inverse_mass_1_kg.data() + chain.first_particle;
         double before = 0.0;
         for (std::size_t k = 0; k < chain.count; ++k) {
             const double here = std::abs(multiplier[chain.first_link + k]);
@@ -238,10 +237,10 @@ double ChainConstraints::square_frequency(std::span<const double> multiplier) co
 }
 
 std::vector<double> ChainConstraints::carried_mass(std::span<const double> mass_kg) const {
-    std::vector<double> carried(links_.size(), 0.0);
+    std::vector<double> carried(bars_.links.size(), 0.0);
     for (const Chain& chain : chains_) {
-        const bool first_is_pinned = inverse_mass_1_kg_[chain.first_particle] == 0.0;
-        const bool last_is_pinned = inverse_mass_1_kg_[chain.first_particle + chain.count] == 0.0;
+        const bool first_is_pinned = bars_.inverse_mass_1_kg[chain.first_particle] == 0.0;
+        const bool last_is_pinned = bars_.inverse_mass_1_kg[chain.first_particle + chain.count] == 0.0;
         double all_kg = 0.0;
         for (std::size_t i = first_is_pinned ? 1 : 0; i + (last_is_pinned ? 1 : 0) <= chain.count; ++i)
             all_kg += mass_kg[chain.first_particle + i];

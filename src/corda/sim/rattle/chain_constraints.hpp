@@ -23,6 +23,7 @@ class ChainConstraints final : public ConstraintSolver {
     [[nodiscard]] bool solve(const Motion& motion, std::span<double> right) override;
     [[nodiscard]] double square_frequency(std::span<const double> multiplier) const override;
     [[nodiscard]] std::vector<double> carried_mass(std::span<const double> mass_kg) const override;
+    [[nodiscard]] const RigidBars& bars() const override { return bars_; }
 
   private:
     /// Links first_link .. first_link + count - 1 join particles first_particle .. first_particle + count.
@@ -38,6 +39,7 @@ class ChainConstraints final : public ConstraintSolver {
     void add_total(const Chain& chain, Motion& motion) const;
     [[nodiscard]] bool meet_lengths(const Chain& chain, double span_s, Motion& motion, double* impulse);
 
+    RigidBars bars_;
     std::vector<Chain> chains_;
     std::vector<double> square_m2_;  ///< one per link: its rest length squared
     // Scratch for one chain. Entry k + 1 belongs to link k; the first and the last entry stand for bars that

@@ -20,14 +20,14 @@ Motion Motion::start_of(const System& system) {
     return {system.x_m, system.y_m, system.vx_m_s, system.vy_m_s, none, none, none, none};
 }
 
-ConstraintSolver::ConstraintSolver(const System& system, std::vector<double> inverse_mass_1_kg)
-    : inverse_mass_1_kg_(std::move(inverse_mass_1_kg)) {
+RigidBars::RigidBars(const System& system, std::vector<double> inverse_masses)
+    : inverse_mass_1_kg(std::move(inverse_masses)) {
     for (std::size_t i = 0; i < system.particle_count(); ++i) {
-        if (inverse_mass_1_kg_[i] == 0.0) held_.push_back(static_cast<std::uint32_t>(i));
+        if (inverse_mass_1_kg[i] == 0.0) held.push_back(static_cast<std::uint32_t>(i));
     }
     for (const Bar& bar : rigid_bars(system)) {
-        if (inverse_mass_1_kg_[bar.a] > 0.0 || inverse_mass_1_kg_[bar.b] > 0.0)
-            links_.push_back({bar.a, bar.b, bar.rest_m});
+        if (inverse_mass_1_kg[bar.a] > 0.0 || inverse_mass_1_kg[bar.b] > 0.0)
+            links.push_back({bar.a, bar.b, bar.rest_m});
     }
 }
 
@@ -36,28 +36,24 @@ double ConstraintSolver::expected_square_frequency(const System& system, double 
     std::vector<double> expected = carried_mass(system.mass_kg);
     for (std::size_t k = 0; k < expected.size(); ++k) {
         expected[k] =
-            std::max(acceleration_m_s2 * expected[k] / links_[k].rest_m, 2.0 * std::abs(multiplier[k]));
+            std::max(acceleration_m_s2 * expected[k] / links()[k].rest_m, 2.0 * std::abs(multiplier[k]));
     }
     return square_frequency(expected);
 }
 
-std::vector<double> ConstraintSolver::loads(const Motion& motion, Vec2 uniform_m_s2) const {
+std::vector<double> loads(const RigidBars& bars, const Motion& motion, Vec2 uniform_m_s2) {
     // d . (acceleration of b - acceleration of a) + |velocity of b - velocity of a|^2 = 0.
     std::vector<double> load;
-    load.reserve(links_.size());
-    for (const auto& [a, b, rest_m] : links_) {
-        const double ux = motion.vx_m_s[b] - motion.vx_m_s[a];
-        const double uy = motion.vy_m_s[b] - motion.vy_m_s[a];
-        const double falls =
-            (inverse_mass_1_kg_[b] == 0.0 ? 0.0 : 1.0) - (inverse_mass_1_kg_[a] == 0.0 ? 0.0 : 1.0);
-        const double dx = motion.x_m[b] - motion.x_m[a];
-        const double dy = motion.y_m[b] - motion.y_m[a];
-        load.push_back(ux * ux + uy * uy + falls * dot({dx, dy}, uniform_m_s2));
+    load.reserve(bars.links.size());
+    const auto falls = [&](std::uint32_t i) { return bars.inverse_mass_1_kg[i] == 0.0 ? 0.0 : 1.0; };
+    for (const Link& link : bars.links) {
+        const Vec2 u = apart(link, motion);
+        load.push_back(dot(u, u) + (falls(link.b) - falls(link.a)) * dot(along(link, motion), uniform_m_s2));
     }
     return load;
 }
 
-void ConstraintSolver::kick(const Stage& stage, Motion& motion) const {
+void kick(const RigidBars& bars, const Stage& stage, Motion& motion) {
     double* __restrict const vx = motion.vx_m_s.data();
     double* __restrict const vy = motion.vy_m_s.data();
     double* __restrict const lost_x = motion.vx_lost_m_s.data();
@@ -67,10 +63,10 @@ void ConstraintSolver::kick(const Stage& stage, Motion& motion) const {
         add_unrounded(vx[i], lost_x[i], slowdown * vx[i] + stage.push_m_s.x);
         add_unrounded(vy[i], lost_y[i], slowdown * vy[i] + stage.push_m_s.y);
     }
-    for (const std::uint32_t i : held_) vx[i] = vy[i] = lost_x[i] = lost_y[i] = 0.0;
+    for (const std::uint32_t i : bars.held) vx[i] = vy[i] = lost_x[i] = lost_y[i] = 0.0;
 }
 
-void ConstraintSolver::drift(double span_s, Motion& motion) {
+void drift(double span_s, Motion& motion) {
     double* __restrict const x = motion.x_m.data();
     double* __restrict const y = motion.y_m.data();
     double* __restrict const lost_x = motion.x_lost_m.data();

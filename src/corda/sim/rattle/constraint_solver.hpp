@@ -44,6 +44,24 @@ struct Link {
     double rest_m = 0.0;
 };
 
+/// The rigid bars of a system with a free end, and the particles that they join. Inverse masses of 0 hold
+/// particles.
+struct RigidBars {
+    RigidBars(const System& system, std::vector<double> inverse_mass_1_kg);
+
+    std::vector<Link> links;
+    std::vector<double> inverse_mass_1_kg;  ///< one per particle
+    std::vector<std::uint32_t> held;        ///< the particles of inverse mass 0
+};
+
+/// From the first particle of a link to the second: the vector d, and the relative velocity.
+[[nodiscard]] inline Vec2 along(const Link& link, const Motion& motion) {
+    return {motion.x_m[link.b] - motion.x_m[link.a], motion.y_m[link.b] - motion.y_m[link.a]};
+}
+[[nodiscard]] inline Vec2 apart(const Link& link, const Motion& motion) {
+    return {motion.vx_m_s[link.b] - motion.vx_m_s[link.a], motion.vy_m_s[link.b] - motion.vy_m_s[link.a]};
+}
+
 /// One stage of a step: v <- decay v + push, then impulses along the current directions of the bars, then
 /// x <- x + span v, such that all bars end with their rest lengths.
 struct Stage {
@@ -91,11 +109,6 @@ class ConstraintSolver : NonCopyable {
     /// False if it cannot.
     [[nodiscard]] virtual bool solve(const Motion& motion, std::span<double> right) = 0;
 
-    /// The right-hand side for solve() whose solution is the tension over length, N / m, of each link if this
-    /// acceleration acts on all free particles. Drag does not enter: it is along the velocities, whose
-    /// differences are across the bars.
-    [[nodiscard]] std::vector<double> loads(const Motion& motion, Vec2 uniform_m_s2) const;
-
     /// True if the bars of the last solve() did not depend on each other, so that it was of full rank.
     [[nodiscard]] virtual bool had_full_rank() const { return true; }
 
@@ -117,24 +130,20 @@ class ConstraintSolver : NonCopyable {
     /// the load in any way.
     [[nodiscard]] virtual bool determines_tensions() const { return true; }
 
-    /// Inverse mass of each particle; 0 if held.
-    [[nodiscard]] const std::vector<double>& inverse_mass_1_kg() const { return inverse_mass_1_kg_; }
+    [[nodiscard]] virtual const RigidBars& bars() const = 0;
 
     /// The bars whose lengths are kept by impulses, in the order of `impulse`.
-    [[nodiscard]] std::span<const Link> links() const { return links_; }
-
-  protected:
-    /// Handles the rigid bars of a system that have an end whose inverse mass is not 0.
-    ConstraintSolver(const System& system, std::vector<double> inverse_mass_1_kg);
-
-    /// The first and the last part of a stage: the change of all velocities, and the move.
-    void kick(const Stage& stage, Motion& motion) const;
-    static void drift(double span_s, Motion& motion);
-
-    std::vector<Link> links_;
-    std::vector<double> inverse_mass_1_kg_;
-    std::vector<std::uint32_t> held_;  ///< the particles of inverse mass 0
+    [[nodiscard]] std::span<const Link> links() const { return bars().links; }
 };
+
+// Parts of move(): a stage begins with the change of all velocities and ends with the move.
+void kick(const RigidBars& bars, const Stage& stage, Motion& motion);
+void drift(double span_s, Motion& motion);
+
+/// The right-hand side for ConstraintSolver::solve() whose solution is the tension over length, N / m, of
+/// each link if this acceleration acts on all free particles. Drag does not enter: it is along the
+/// velocities, whose differences are across the bars.
+[[nodiscard]] std::vector<double> loads(const RigidBars& bars, const Motion& motion, Vec2 uniform_m_s2);
 
 /// The solver that suits the rigid bars of a system: ChainConstraints if every bar joins a particle to the
 /// next one, or if there is none; otherwise GraphConstraints. Throws corda::Refusal if the lengths do not

@@ -20,6 +20,9 @@ class StoppableLdlt final : public Eigen::SimplicialLDLT<Eigen::SparseMatrix<dou
     /// 31 (2005) 587). False if a pivot is 0. If it is cancelled, there are no factors.
     [[nodiscard]] bool factorize(const Eigen::SparseMatrix<double>& lower);
 
+    /// The pivot of a row of the matrix.
+    [[nodiscard]] double pivot(Eigen::Index row) const { return m_diag[m_P.indices()[row]]; }
+
   private:
     /// Writes the columns of the pattern of row k of L to the end of pattern_, and that row of the matrix to
     /// row_. Returns where the pattern begins.
@@ -28,6 +31,44 @@ class StoppableLdlt final : public Eigen::SimplicialLDLT<Eigen::SparseMatrix<dou
     Eigen::VectorXd row_;
     VectorI pattern_;
     VectorI visited_by_;
+};
+
+/// Rigid bars and the matrix G W G' of their impulses, with its factors. Bars that others imply at the start
+/// are left out: see section 3.4 of src/corda/sim/README.md.
+struct BarGraph {
+    /// An entry factor * (d_row . d_column) of the lower triangle.
+    struct Entry {
+        std::uint32_t row = 0;
+        std::uint32_t column = 0;
+        double factor = 0.0;  ///< sum of the shared particles' inverse masses, signed
+    };
+
+    /// Throws corda::Refusal for bars that depend on each other at the start and do not stay so.
+    explicit BarGraph(const System& system);
+
+    RigidBars bars;
+    std::vector<Link> implied;
+    std::vector<Entry> entries;          ///< in the order of the matrix's values
+    Eigen::SparseMatrix<double> matrix;  ///< lower triangle
+    StoppableLdlt factors;
+    bool is_factorised = false;  ///< the factors are those of dx_m, dy_m and raise
+    double raise = 0.0;
+    std::vector<double> dx_m;  ///< bar vectors at the start of a stage
+    std::vector<double> dy_m;
+    double smallest_pivot = 1.0;  ///< of the last is_regular(), over its diagonal entry; 0 if it is not
+    Eigen::VectorXd right;        ///< scratch, one entry per link
+};
+
+/// A system that moves only as a rigid body, about its pin or its centre of mass.
+struct RigidPlate {
+    double inertia_kg_m2 = 0.0;
+    double lever_kg_m = 0.0;  ///< mass times the distance of the centre of mass
+};
+
+/// Newton's matrix with the bars at the end of a stage on one side; empty until it is needed.
+struct CrossingMatrix {
+    Eigen::SparseMatrix<double> matrix;
+    Eigen::SparseLU<Eigen::SparseMatrix<double>> factors;
 };
 
 /// Bars in any graph: closed ropes, nets. The matrix G W G' at the start of a stage is factorised once per
@@ -40,70 +81,24 @@ class GraphConstraints final : public ConstraintSolver {
     explicit GraphConstraints(const System& system);
 
     [[nodiscard]] bool move(const Stage& stage, Motion& motion, std::span<double> impulse) override;
-    [[nodiscard]] bool tells_tensions() const override;
-    [[nodiscard]] double distance_from_line(const Motion& motion) override {
-        static_cast<void>(is_regular(motion));
-        return smallest_pivot_ / near_line_;
-    }
+    [[nodiscard]] bool tells_tensions() const override { return graph_.smallest_pivot >= near_line_; }
+    [[nodiscard]] double distance_from_line(const Motion& motion) override;
     [[nodiscard]] bool leap(double span_s, Motion& motion) override;
     [[nodiscard]] bool solve(const Motion& motion, std::span<double> right) override;
-    [[nodiscard]] bool had_full_rank() const override { return smallest_pivot_ > 0.0; }
+    [[nodiscard]] bool had_full_rank() const override { return graph_.smallest_pivot > 0.0; }
     [[nodiscard]] double square_frequency(std::span<const double> multiplier) const override;
     [[nodiscard]] double expected_square_frequency(const System& system, double acceleration_m_s2,
                                                    std::span<const double> multiplier) const override;
-    [[nodiscard]] bool determines_tensions() const override { return implied_.empty() && !holds_rows_; }
+    [[nodiscard]] bool determines_tensions() const override { return graph_.implied.empty() && !holds_rows_; }
     [[nodiscard]] std::vector<double> carried_mass(std::span<const double> mass_kg) const override;
+    [[nodiscard]] const RigidBars& bars() const override { return graph_.bars; }
 
   private:
-    /// An entry factor * (d_row . d_column) of the lower triangle, in the order of the matrix's values.
-    struct Entry {
-        std::uint32_t row = 0;
-        std::uint32_t column = 0;
-        double factor = 0.0;  ///< sum of the shared particles' inverse masses, signed
-    };
-    /// A system that moves only as a rigid body, about its pin or its centre of mass.
-    struct Plate {
-        double inertia_kg_m2 = 0.0;
-        double lever_kg_m = 0.0;  ///< mass times the distance of the centre of mass
-    };
-    void analyse();
-    /// Factorises the matrix at these positions, its diagonal entries raised by a share; does nothing if
-    /// factors_ are already the result. False if it cannot.
-    [[nodiscard]] bool factorise(const Motion& motion, double raise);
-    /// Factorises the matrix without a raise; false also if bars depend on each other.
-    [[nodiscard]] bool is_regular(const Motion& motion);
-    /// Moves the links that others imply to implied_, as far as a factorisation with this raise shows them.
-    void leave_out_implied(const Motion& start, double raise);
-    /// True if regular links leave only the motions of a rigid body.
-    [[nodiscard]] bool is_rigid() const;
-    [[nodiscard]] Plate plate_of(const System& system) const;
-    /// True if every motion from these positions that keeps the links' lengths keeps those of the implied
-    /// bars, to second order.
-    [[nodiscard]] bool stay_implied(Motion motion);
-    [[nodiscard]] bool meet_implied(const Motion& motion) const;
-    void apply(const double* impulse, Motion& motion) const;
-    [[nodiscard]] bool correct(double span_s, const Motion& motion);
-    /// The largest squared relative velocity of a link's ends.
-    [[nodiscard]] double largest_square(const Motion& motion) const;
-    /// Completes a stage after its kick by the full Newton method, whose matrix follows the bars to either
-    /// side of their line. False if it does not converge or may have taken the other branch.
-    [[nodiscard]] bool cross(double span_s, Motion& motion, std::span<double> impulse);
-
+    BarGraph graph_;
     bool holds_rows_;
-    std::optional<Plate> plate_;
-    std::vector<Link> implied_;
-    std::vector<Entry> entries_;
-    Eigen::SparseMatrix<double> matrix_;  ///< lower triangle
-    StoppableLdlt factors_;
-    bool is_factorised_ = false;  ///< factors_ are those of dx_m_, dy_m_ and raise_
-    double raise_ = 0.0;
-    std::vector<double> dx_m_;  ///< bar vectors at the start of a stage
-    std::vector<double> dy_m_;
-    Eigen::VectorXd right_;
-    double smallest_pivot_ = 1.0;  ///< of the last is_regular(), over its diagonal entry; 0 if it is not
-    double near_line_ = 0.0;       ///< of smallest_pivot_
-    Eigen::SparseMatrix<double> crossing_;  ///< that of cross(); empty until it is needed
-    Eigen::SparseLU<Eigen::SparseMatrix<double>> crossing_factors_;
+    std::optional<RigidPlate> plate_;
+    double near_line_;  ///< of BarGraph::smallest_pivot
+    CrossingMatrix crossing_;
     mutable std::vector<double> load_;  ///< scratch, one entry per particle
 };
 

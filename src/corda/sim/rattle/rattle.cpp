@@ -92,7 +92,7 @@ Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def,
       forces_(forces),
       elastic_(system, 0, system.particle_count()),
       mass_kg_(system.mass_kg),
-      inverse_mass_1_kg_(constraints_->inverse_mass_1_kg()),
+      inverse_mass_1_kg_(constraints_->bars().inverse_mass_1_kg),
       impulse_(constraints_->links().size(), 0.0),
       tension_over_length_n_m_(impulse_.size(), 0.0) {
     refuse_rigid_strings(system);
@@ -356,7 +356,7 @@ bool Rattle::complete(const Trajectory& trajectory) {
 
 bool Rattle::find_tensions() {
     const auto links = constraints_->links();
-    tension_over_length_n_m_ = constraints_->loads(output_, forces_.uniform_m_s2());
+    tension_over_length_n_m_ = loads(constraints_->bars(), output_, forces_.uniform_m_s2());
     if (is_elastic()) {
         for (std::size_t k = 0; k < links.size(); ++k) {
             const auto [a, b, rest_m] = links[k];
