@@ -52,15 +52,15 @@ constexpr std::array<Composition, 4> kCompositions{
     Composition{8, kOrder8, 3.09},
 };
 
-/// Two parts are joined again if the doubled span stays below this share of the guard. Below 1, because each
-/// change of the parts costs some energy.
-constexpr double kJoinShare = 0.8;
 /// A step is divided into at most 2^24 parts, so that a step of 1 s can follow frequencies of 1e7 / s.
 constexpr int kMaxLevel = 24;
 constexpr std::uint64_t kMinParts = std::uint64_t{1} << kMaxLevel;
-constexpr double kMaxStepsPerFrame = 1e7;
+/// Two parts are joined again if the doubled span stays below this share of the guard. Below 1, because each
+/// change of the parts costs some energy.
+constexpr double kJoinShare = 0.8;
 /// A stage whose kick is below this share of its span does not determine the tension.
 constexpr double kShortKick = 1e-3;
+constexpr double kMaxStepsPerFrame = 1e7;
 
 void refuse_rigid_strings(const System& system) {
     for (const Body& body : system.bodies) {
@@ -72,8 +72,245 @@ void refuse_rigid_strings(const System& system) {
     }
 }
 
-double power_of_half(int exponent) {
-    return 1.0 / static_cast<double>(std::uint64_t{1} << exponent);
+/// The bars whose tensions are those of the links, in their order.
+std::vector<std::size_t> bars_of_links(const System& system, const RigidBars& bars) {
+    std::vector<std::size_t> bar_of_link;
+    for (const Body& body : system.bodies) {
+        for (std::size_t k = body.first_bar; k < body.first_bar + body.bar_count; ++k) {
+            const Bar& bar = system.bars[k];
+            const bool moves = bars.inverse_mass_1_kg[bar.a] > 0.0 || bars.inverse_mass_1_kg[bar.b] > 0.0;
+            if (body.material.compliance_1_n == 0.0 && moves) bar_of_link.push_back(k);
+        }
+    }
+    assert(bar_of_link.size() == bars.links.size());
+    return bar_of_link;
+}
+
+/// The frame interval over the smallest whole number that makes a stable step.
+double stable_step_s(const RattleModel& model, double square_frequency, double frame_interval_s) {
+    const double stable_s = model.guard * model.composition.stable_omega_h / std::sqrt(square_frequency);
+    const double steps = std::max(1.0, std::ceil(frame_interval_s / stable_s));
+    if (!(steps <= kMaxStepsPerFrame)) {
+        throw Refusal(Refusal::Reason::kDefinition,
+                      fmt::format("its particles vibrate so fast that a frame takes {:.2g} steps of method "
+                                  "rattle, over the limit of {:g}; give more compliance, less bending, "
+                                  "heavier particles or less gravity",
+                                  steps, kMaxStepsPerFrame));
+    }
+    return frame_interval_s / steps;
+}
+
+RattleModel prepare_rattle(const System& system, const Forces& forces, const RattleDef& def) {
+    RattleModel model{.composition = composition(def.order),
+                      .guard = def.guard,
+                      .constraints = make_constraint_solver(system),
+                      .forces = forces,
+                      .elastic = {system, 0, system.particle_count()}};
+    model.impulse.assign(model.constraints->links().size(), 0.0);
+    model.history.assign(RattleModel::kHistory * model.composition.stages.size() * model.impulse.size(), 0.0);
+    if (model.elastic.empty()) return model;
+    model.force_x_n.assign(system.particle_count(), 0.0);
+    model.force_y_n.assign(system.particle_count(), 0.0);
+    return model;
+}
+
+/// Writes the elastic forces at these positions to the model, and returns their bound on the square of the
+/// largest frequency.
+double find_forces(RattleModel& model, const Motion& motion) {
+    if (model.elastic.empty()) return 0.0;
+    std::fill(model.force_x_n.begin(), model.force_x_n.end(), 0.0);
+    std::fill(model.force_y_n.begin(), model.force_y_n.end(), 0.0);
+    return model.elastic.add_forces(motion.x_m.data(), motion.y_m.data(), model.force_x_n.data(),
+                                    model.force_y_n.data());
+}
+
+/// Writes a trajectory's state with complete velocities to `output`, and the elastic forces there to the
+/// model. False if the bars do not determine them.
+bool complete(RattleModel& model, const Trajectory& trajectory, Motion& output) {
+    const std::vector<double>& inverse_mass = model.constraints->bars().inverse_mass_1_kg;
+    const std::span<const Link> links = model.constraints->links();
+    // The second half of the last stage's kick.
+    output = trajectory.motion;
+    const double half_s = 0.5 * trajectory.last_span_s;
+    const double decay = model.forces.decay(half_s);
+    if (!model.elastic.empty()) {
+        find_forces(model, output);
+        for (std::size_t i = 0; i < inverse_mass.size(); ++i) {
+            output.vx_m_s[i] += half_s * inverse_mass[i] * model.force_x_n[i];
+            output.vy_m_s[i] += half_s * inverse_mass[i] * model.force_y_n[i];
+        }
+    }
+    const Vec2 push_m_s = half_s * model.forces.uniform_m_s2();
+    for (std::size_t i = 0; i < inverse_mass.size(); ++i) {
+        const bool is_held = inverse_mass[i] == 0.0;
+        output.vx_m_s[i] = is_held ? 0.0 : decay * (output.vx_m_s[i] + push_m_s.x);
+        output.vy_m_s[i] = is_held ? 0.0 : decay * (output.vy_m_s[i] + push_m_s.y);
+    }
+    // The impulses q that leave no bar a change of its length.
+    for (std::size_t k = 0; k < links.size(); ++k)
+        model.impulse[k] = dot(along(links[k], output), apart(links[k], output));
+    if (!model.constraints->solve(output, model.impulse)) return false;
+    for (std::size_t k = 0; k < links.size(); ++k) {
+        const auto [a, b, rest_m] = links[k];
+        const Vec2 pull = model.impulse[k] * along(links[k], output);
+        output.vx_m_s[a] += inverse_mass[a] * pull.x;
+        output.vy_m_s[a] += inverse_mass[a] * pull.y;
+        output.vx_m_s[b] -= inverse_mass[b] * pull.x;
+        output.vy_m_s[b] -= inverse_mass[b] * pull.y;
+    }
+    return true;
+}
+
+/// Writes the tension over length, N / m, of each rigid bar in a complete state whose elastic forces are the
+/// model's. False if bars depend on each other there.
+bool find_multipliers(const RattleModel& model, const Motion& motion, std::vector<double>& multiplier) {
+    const RigidBars& bars = model.constraints->bars();
+    multiplier = loads(bars, motion, model.forces.uniform_m_s2());
+    if (!model.elastic.empty()) {
+        for (std::size_t k = 0; k < bars.links.size(); ++k) {
+            const auto [a, b, rest_m] = bars.links[k];
+            const double wa = bars.inverse_mass_1_kg[a];
+            const double wb = bars.inverse_mass_1_kg[b];
+            multiplier[k] +=
+                dot(along(bars.links[k], motion), {wb * model.force_x_n[b] - wa * model.force_x_n[a],
+                                                   wb * model.force_y_n[b] - wa * model.force_y_n[a]});
+        }
+    }
+    return model.constraints->solve(motion, multiplier) && model.constraints->had_full_rank();
+}
+
+/// The multipliers of a stage, `age` parts of the grid ago.
+double* multipliers(RattleModel& model, std::size_t stage, int age) {
+    const auto slot =
+        static_cast<std::size_t>((model.newest - age + RattleModel::kHistory) % RattleModel::kHistory);
+    return model.history.data() + (slot * model.composition.stages.size() + stage) * model.impulse.size();
+}
+
+/// Writes the impulses expected of a stage: those of the polynomial through its multipliers in the last
+/// `known` parts of the grid, evaluated one part later; without any, those of the trajectory's last stage.
+void guess(RattleModel& model, std::size_t stage, double kick_s, int known, const Trajectory& trajectory) {
+    double* const impulse = model.impulse.data();
+    const std::size_t count = model.impulse.size();
+    const double* const last = known > 0 ? multipliers(model, stage, 1) : trajectory.multiplier.data();
+    if (known < 2) {
+        for (std::size_t k = 0; k < count; ++k) impulse[k] = kick_s * last[k];
+        return;
+    }
+    const double* const second = multipliers(model, stage, 2);
+    if (known < 3) {
+        for (std::size_t k = 0; k < count; ++k) impulse[k] = kick_s * (2.0 * last[k] - second[k]);
+        return;
+    }
+    // The slot of age 0 still holds the oldest.
+    const double* const third = multipliers(model, stage, 0);
+    for (std::size_t k = 0; k < count; ++k) impulse[k] = kick_s * (3.0 * (last[k] - second[k]) + third[k]);
+}
+
+/// Applies the decay and the push of a stage together with the elastic forces; returns what is left of it.
+Stage push(const RattleModel& model, double kick_s, const Stage& stage, Motion& motion) {
+    const std::vector<double>& inverse_mass = model.constraints->bars().inverse_mass_1_kg;
+    const double slowdown = stage.decay - 1.0;
+    for (std::size_t i = 0; i < inverse_mass.size(); ++i) {
+        const double weighted_s = kick_s * inverse_mass[i];
+        const double change_x =
+            slowdown * motion.vx_m_s[i] + stage.push_m_s.x + weighted_s * model.force_x_n[i];
+        const double change_y =
+            slowdown * motion.vy_m_s[i] + stage.push_m_s.y + weighted_s * model.force_y_n[i];
+        add_unrounded(motion.vx_m_s[i], motion.vx_lost_m_s[i], change_x);
+        add_unrounded(motion.vy_m_s[i], motion.vy_lost_m_s[i], change_y);
+    }
+    return {stage.span_s, 1.0, {}};
+}
+
+/// Takes the stages of one part. False if one fails, or if the frequencies grow too high for the part.
+bool take_part(RattleModel& model, double part_s, bool is_grid, Trajectory& trajectory) {
+    const int known = is_grid ? model.known : 0;
+    if (is_grid) model.newest = (model.newest + 1) % RattleModel::kHistory;
+    for (std::size_t i = 0; i < model.composition.stages.size(); ++i) {
+        // The second half of the last stage's kick and the first half of this one's.
+        const double span_s = model.composition.stages[i] * part_s;
+        const double decay = model.forces.decay(0.5 * (trajectory.last_span_s + span_s));
+        const double kick_s = 0.5 * (decay * trajectory.last_span_s + span_s);
+        guess(model, i, kick_s, known, trajectory);
+        Stage stage{span_s, decay, kick_s * model.forces.uniform_m_s2()};
+        const double elastic_square = find_forces(model, trajectory.motion);
+        if (!model.elastic.empty()) stage = push(model, kick_s, stage, trajectory.motion);
+        if (!model.constraints->move(stage, trajectory.motion, model.impulse)) return false;
+        trajectory.last_span_s = span_s;
+        // What the impulses tell of the tensions, and these of the frequencies.
+        if (std::abs(kick_s) < kShortKick * std::abs(span_s)) continue;
+        std::vector<double>& multiplier = trajectory.multiplier;
+        if (model.constraints->tells_tensions()) {
+            for (std::size_t k = 0; k < multiplier.size(); ++k) multiplier[k] = model.impulse[k] / kick_s;
+        }
+        if (is_grid) std::copy(multiplier.begin(), multiplier.end(), multipliers(model, i, 0));
+        trajectory.frequency_1_s =
+            std::sqrt(model.constraints->square_frequency(multiplier) + elastic_square);
+        // Negated, so that a NaN fails.
+        if (!(trajectory.frequency_1_s * part_s <= model.guard * model.composition.stable_omega_h))
+            return false;
+    }
+    if (is_grid) model.known = std::min(model.known + 1, RattleModel::kHistory);
+    return true;
+}
+
+/// Completes a step whose parts fail.
+bool leap(RattleModel& model, double span_s, Trajectory& trajectory) {
+    Motion motion;
+    if (!complete(model, trajectory, motion)) return false;
+    const std::vector<double>& inverse_mass = model.constraints->bars().inverse_mass_1_kg;
+    const double decay = model.forces.decay(span_s);
+    for (std::size_t i = 0; i < inverse_mass.size(); ++i) {
+        if (inverse_mass[i] == 0.0) continue;
+        Vec2 push_m_s = span_s * model.forces.uniform_m_s2();
+        if (!model.elastic.empty())
+            push_m_s = push_m_s + span_s * inverse_mass[i] * Vec2{model.force_x_n[i], model.force_y_n[i]};
+        motion.vx_m_s[i] = decay * (motion.vx_m_s[i] + push_m_s.x);
+        motion.vy_m_s[i] = decay * (motion.vy_m_s[i] + push_m_s.y);
+    }
+    if (!model.constraints->leap(span_s, motion)) return false;
+    const double elastic_square = find_forces(model, motion);
+    std::vector<double> multiplier;
+    if (find_multipliers(model, motion, multiplier)) trajectory.multiplier = std::move(multiplier);
+    trajectory.motion = std::move(motion);
+    trajectory.last_span_s = 0.0;
+    trajectory.level = 0;
+    trajectory.has_leapt = true;
+    trajectory.frequency_1_s =
+        std::sqrt(model.constraints->square_frequency(trajectory.multiplier) + elastic_square);
+    return true;
+}
+
+/// Advances by `span_s` in as many parts as are needed. `is_grid`: the parts are those of the grid, in
+/// order. False if no part is short enough and there is no leap.
+bool advance(RattleModel& model, double span_s, bool is_grid, Trajectory& trajectory) {
+    const double limit = model.guard * model.composition.stable_omega_h;
+    std::uint64_t done = 0;
+    while (done < kMinParts) {
+        const std::uint64_t part = kMinParts >> trajectory.level;
+        const double part_s = std::ldexp(span_s, -trajectory.level);
+        const bool stable = trajectory.frequency_1_s * part_s <= limit;
+        if (stable) model.part_start = trajectory;
+        if (stable && take_part(model, part_s, is_grid, trajectory)) {
+            done += part;
+            if (is_grid) ++model.parts;
+            const bool joins = trajectory.level > 0 && done % (2 * part) == 0 &&
+                               trajectory.frequency_1_s * 2.0 * part_s <= kJoinShare * limit;
+            if (!joins) continue;
+            --trajectory.level;
+        } else {
+            if (stable) std::swap(trajectory, model.part_start);
+            if (trajectory.level == kMaxLevel) {
+                const auto rest = static_cast<double>(kMinParts - done);
+                if (!leap(model, std::ldexp(span_s, -kMaxLevel) * rest, trajectory)) return false;
+                done = kMinParts;
+            } else {
+                ++trajectory.level;
+            }
+        }
+        if (is_grid) model.known = 0;
+    }
+    return true;
 }
 
 }  // namespace
@@ -85,49 +322,26 @@ const Composition& composition(int order) {
 
 Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def, double frame_interval_s)
     : Solver(sim::energy_scale_j(system, forces.on_particles(system)), forces.conserve_energy()),
-      order_(def.order),
-      guard_(def.guard),
-      composition_(composition(def.order)),
-      constraints_(make_constraint_solver(system)),
-      forces_(forces),
-      elastic_(system, 0, system.particle_count()),
-      mass_kg_(system.mass_kg),
-      inverse_mass_1_kg_(constraints_->bars().inverse_mass_1_kg),
-      impulse_(constraints_->links().size(), 0.0),
-      tension_over_length_n_m_(impulse_.size(), 0.0) {
+      model_(prepare_rattle(system, forces, def)),
+      mass_kg_(system.mass_kg) {
     refuse_rigid_strings(system);
-    if (constraints_->determines_tensions()) find_bars_of_links(system);
+    const ConstraintSolver& constraints = *model_.constraints;
+    if (constraints.determines_tensions()) bar_of_link_ = bars_of_links(system, constraints.bars());
     grid_.motion = Motion::start_of(system);
-    if (is_elastic()) {
-        force_x_n_.assign(mass_kg_.size(), 0.0);
-        force_y_n_.assign(mass_kg_.size(), 0.0);
-    }
-    history_.multipliers.assign(kHistory * composition_.stages.size() * impulse_.size(), 0.0);
-    if (!complete(grid_) || !find_tensions()) {
+    if (!complete(model_, grid_, output_) || !find_multipliers(model_, output_, grid_.multiplier)) {
         throw Refusal(Refusal::Reason::kDependentBars,
                       "the rigid bars do not determine their tensions at the start");
     }
     grid_.motion = output_;
-    grid_.multiplier = tension_over_length_n_m_;
-    const double elastic_square = is_elastic() ? find_forces(output_) : 0.0;
-    grid_.frequency_1_s = std::sqrt(constraints_->square_frequency(grid_.multiplier) + elastic_square);
+    const double elastic_square = find_forces(model_, output_);
+    grid_.frequency_1_s = std::sqrt(constraints.square_frequency(grid_.multiplier) + elastic_square);
     if (def.step_s) {
         step_s_ = *def.step_s;
     } else {
-        const double expected_square = constraints_->expected_square_frequency(
-                                           system, kLoadFactor * forces_.strength_m_s2(), grid_.multiplier) +
-                                       std::max(elastic_square, elastic_.common_square_frequency());
-        const double stable_s = guard_ * composition_.stable_omega_h / std::sqrt(expected_square);
-        const double steps = std::max(1.0, std::ceil(frame_interval_s / stable_s));
-        if (!(steps <= kMaxStepsPerFrame)) {
-            throw Refusal(
-                Refusal::Reason::kDefinition,
-                fmt::format("its particles vibrate so fast that a frame takes {:.2g} steps of method "
-                            "rattle, over the limit of {:g}; give more compliance, less bending, "
-                            "heavier particles or less gravity",
-                            steps, kMaxStepsPerFrame));
-        }
-        step_s_ = frame_interval_s / steps;
+        const double expected_square = constraints.expected_square_frequency(
+                                           system, kLoadFactor * forces.strength_m_s2(), grid_.multiplier) +
+                                       std::max(elastic_square, model_.elastic.common_square_frequency());
+        step_s_ = stable_step_s(model_, expected_square, frame_interval_s);
     }
     assert(step_s_ > 0.0);
 }
@@ -152,12 +366,12 @@ Status Rattle::advance_to(double time_s, State& state) {
         if (!step()) return Status::kDiverged;
     }
     if (!target.is_on_grid) {
-        between_ = is_near_line_ ? before_ : grid_;
+        aside_ = is_near_line_ ? before_ : grid_;
         const auto from = static_cast<double>(is_near_line_ ? step_ - 1 : step_);
-        if (!advance(time_s - from * step_s_, between_, nullptr)) return Status::kDiverged;
+        if (!advance(model_, time_s - from * step_s_, false, aside_)) return Status::kDiverged;
     }
-    const Trajectory& reached = target.is_on_grid ? grid_ : between_;
-    if (!complete(reached)) return Status::kDiverged;
+    const Trajectory& reached = target.is_on_grid ? grid_ : aside_;
+    if (!complete(model_, reached, output_)) return Status::kDiverged;
     has_branched_ = reached.has_leapt;
     state.time_s = time_s;
     state.x_m = output_.x_m;
@@ -167,207 +381,30 @@ Status Rattle::advance_to(double time_s, State& state) {
 
 bool Rattle::step() {
     if (is_near_line_ && step_over_line()) return true;
-    const bool has_lines = constraints_->distance_from_line(grid_.motion) < HUGE_VAL;
+    ConstraintSolver& constraints = *model_.constraints;
+    const bool has_lines = constraints.distance_from_line(grid_.motion) < HUGE_VAL;
     if (has_lines) before_ = grid_;
-    if (!advance(step_s_, grid_, &history_)) return false;
+    if (!advance(model_, step_s_, true, grid_)) return false;
     ++step_;
-    is_near_line_ = has_lines && constraints_->distance_from_line(grid_.motion) < 1.0;
+    is_near_line_ = has_lines && constraints.distance_from_line(grid_.motion) < 1.0;
     return true;
 }
 
 bool Rattle::step_over_line() {
     constexpr double kPast = 0.5;
     is_near_line_ = false;
-    const double near = constraints_->distance_from_line(grid_.motion);
-    over_ = before_;
-    if (!advance((1.0 + kPast) * step_s_, over_, nullptr) || over_.has_leapt ||
-        !(constraints_->distance_from_line(over_.motion) > near) ||
-        !advance((1.0 - kPast) * step_s_, over_, nullptr) || over_.has_leapt)
+    const auto advances = [&](double steps) {
+        return advance(model_, steps * step_s_, false, aside_) && !aside_.has_leapt;
+    };
+    const double near = model_.constraints->distance_from_line(grid_.motion);
+    aside_ = before_;
+    if (!advances(1.0 + kPast) || !(model_.constraints->distance_from_line(aside_.motion) > near) ||
+        !advances(1.0 - kPast))
         return false;
-    std::swap(grid_, over_);
-    history_.count = 0;
+    std::swap(grid_, aside_);
+    model_.known = 0;
     ++step_;
     return true;
-}
-
-bool Rattle::advance(double span_s, Trajectory& trajectory, History* history) {
-    const double limit = guard_ * composition_.stable_omega_h;
-    std::uint64_t done = 0;
-    while (done < kMinParts) {
-        const std::uint64_t part = kMinParts >> trajectory.level;
-        const double part_s = span_s * power_of_half(trajectory.level);
-        const bool stable = trajectory.frequency_1_s * part_s <= limit;
-        if (stable) part_start_ = trajectory;
-        if (stable && take_part(part_s, trajectory, history)) {
-            done += part;
-            if (history != nullptr) ++parts_;
-            const bool joins = trajectory.level > 0 && done % (2 * part) == 0 &&
-                               trajectory.frequency_1_s * 2.0 * part_s <= kJoinShare * limit;
-            if (!joins) continue;
-            --trajectory.level;
-        } else {
-            if (stable) std::swap(trajectory, part_start_);
-            if (trajectory.level == kMaxLevel) {
-                const auto rest = static_cast<double>(kMinParts - done);
-                if (!leap(span_s * power_of_half(kMaxLevel) * rest, trajectory)) return false;
-                done = kMinParts;
-            } else {
-                ++trajectory.level;
-            }
-        }
-        if (history != nullptr) history->count = 0;
-    }
-    return true;
-}
-
-bool Rattle::take_part(double part_s, Trajectory& trajectory, History* history) {
-    if (history != nullptr) history->newest = (history->newest + 1) % kHistory;
-    for (std::size_t i = 0; i < composition_.stages.size(); ++i) {
-        const double span_s = composition_.stages[i] * part_s;
-        const double decay = forces_.decay(0.5 * (trajectory.last_span_s + span_s));
-        const double kick_s = 0.5 * (decay * trajectory.last_span_s + span_s);
-        guess(i, kick_s, trajectory, history);
-        Stage stage{span_s, decay, kick_s * forces_.uniform_m_s2()};
-        const double elastic_square = is_elastic() ? push(kick_s, stage, trajectory.motion) : 0.0;
-        if (!constraints_->move(stage, trajectory.motion, impulse_)) return false;
-        trajectory.last_span_s = span_s;
-        if (std::abs(kick_s) < kShortKick * std::abs(span_s)) continue;
-        if (constraints_->tells_tensions()) {
-            for (std::size_t k = 0; k < impulse_.size(); ++k) trajectory.multiplier[k] = impulse_[k] / kick_s;
-        }
-        if (history != nullptr)
-            std::copy(trajectory.multiplier.begin(), trajectory.multiplier.end(),
-                      multipliers(*history, i, 0));
-        trajectory.frequency_1_s =
-            std::sqrt(constraints_->square_frequency(trajectory.multiplier) + elastic_square);
-        // Negated, so that a NaN fails.
-        if (!(trajectory.frequency_1_s * part_s <= guard_ * composition_.stable_omega_h)) return false;
-    }
-    if (history != nullptr) history->count = std::min(history->count + 1, kHistory);
-    return true;
-}
-
-bool Rattle::leap(double span_s, Trajectory& trajectory) {
-    if (!complete(trajectory)) return false;
-    const double decay = forces_.decay(span_s);
-    for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
-        if (inverse_mass_1_kg_[i] == 0.0) continue;
-        Vec2 push_m_s = span_s * forces_.uniform_m_s2();
-        if (is_elastic())
-            push_m_s = push_m_s + span_s * inverse_mass_1_kg_[i] * Vec2{force_x_n_[i], force_y_n_[i]};
-        output_.vx_m_s[i] = decay * (output_.vx_m_s[i] + push_m_s.x);
-        output_.vy_m_s[i] = decay * (output_.vy_m_s[i] + push_m_s.y);
-    }
-    if (!constraints_->leap(span_s, output_)) return false;
-    const double elastic_square = is_elastic() ? find_forces(output_) : 0.0;
-    if (find_tensions()) trajectory.multiplier = tension_over_length_n_m_;
-    trajectory.motion = output_;
-    trajectory.last_span_s = 0.0;
-    trajectory.level = 0;
-    trajectory.has_leapt = true;
-    trajectory.frequency_1_s =
-        std::sqrt(constraints_->square_frequency(trajectory.multiplier) + elastic_square);
-    return true;
-}
-
-double Rattle::find_forces(const Motion& motion) {
-    std::fill(force_x_n_.begin(), force_x_n_.end(), 0.0);
-    std::fill(force_y_n_.begin(), force_y_n_.end(), 0.0);
-    return elastic_.add_forces(motion.x_m.data(), motion.y_m.data(), force_x_n_.data(), force_y_n_.data());
-}
-
-double Rattle::push(double kick_s, Stage& stage, Motion& motion) {
-    const double square_frequency = find_forces(motion);
-    const double slowdown = stage.decay - 1.0;
-    for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
-        const double weighted_s = kick_s * inverse_mass_1_kg_[i];
-        const double change_x = slowdown * motion.vx_m_s[i] + stage.push_m_s.x + weighted_s * force_x_n_[i];
-        const double change_y = slowdown * motion.vy_m_s[i] + stage.push_m_s.y + weighted_s * force_y_n_[i];
-        add_unrounded(motion.vx_m_s[i], motion.vx_lost_m_s[i], change_x);
-        add_unrounded(motion.vy_m_s[i], motion.vy_lost_m_s[i], change_y);
-    }
-    stage.decay = 1.0;
-    stage.push_m_s = {};
-    return square_frequency;
-}
-
-double* Rattle::multipliers(History& history, std::size_t stage, int age) const {
-    const auto slot = static_cast<std::size_t>((history.newest - age + kHistory) % kHistory);
-    return history.multipliers.data() + (slot * composition_.stages.size() + stage) * impulse_.size();
-}
-
-void Rattle::guess(std::size_t stage, double kick_s, const Trajectory& trajectory, History* history) {
-    const std::size_t count = impulse_.size();
-    const int known = history != nullptr ? history->count : 0;
-    const double* const last = known > 0 ? multipliers(*history, stage, 1) : trajectory.multiplier.data();
-    // The polynomial through the known multipliers of this stage, evaluated one part later.
-    if (known < 2) {
-        for (std::size_t k = 0; k < count; ++k) impulse_[k] = kick_s * last[k];
-        return;
-    }
-    const double* const second = multipliers(*history, stage, 2);
-    if (known < 3) {
-        for (std::size_t k = 0; k < count; ++k) impulse_[k] = kick_s * (2.0 * last[k] - second[k]);
-        return;
-    }
-    // The slot of age 0 still holds the oldest.
-    const double* const third = multipliers(*history, stage, 0);
-    for (std::size_t k = 0; k < count; ++k) impulse_[k] = kick_s * (3.0 * (last[k] - second[k]) + third[k]);
-}
-
-bool Rattle::complete(const Trajectory& trajectory) {
-    output_ = trajectory.motion;
-    const double half_s = 0.5 * trajectory.last_span_s;
-    const double decay = forces_.decay(half_s);
-    if (is_elastic()) {
-        find_forces(output_);
-        for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
-            output_.vx_m_s[i] += half_s * inverse_mass_1_kg_[i] * force_x_n_[i];
-            output_.vy_m_s[i] += half_s * inverse_mass_1_kg_[i] * force_y_n_[i];
-        }
-    }
-    const Vec2 push_m_s = half_s * forces_.uniform_m_s2();
-    for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
-        const bool is_held = inverse_mass_1_kg_[i] == 0.0;
-        output_.vx_m_s[i] = is_held ? 0.0 : decay * (output_.vx_m_s[i] + push_m_s.x);
-        output_.vy_m_s[i] = is_held ? 0.0 : decay * (output_.vy_m_s[i] + push_m_s.y);
-    }
-    const auto links = constraints_->links();
-    const auto along = [&](const Link& link) {
-        return Vec2{output_.x_m[link.b] - output_.x_m[link.a], output_.y_m[link.b] - output_.y_m[link.a]};
-    };
-    for (std::size_t k = 0; k < links.size(); ++k) {
-        const Link& link = links[k];
-        const Vec2 d = along(link);
-        impulse_[k] = d.x * (output_.vx_m_s[link.b] - output_.vx_m_s[link.a]) +
-                      d.y * (output_.vy_m_s[link.b] - output_.vy_m_s[link.a]);
-    }
-    if (!constraints_->solve(output_, impulse_)) return false;
-    for (std::size_t k = 0; k < links.size(); ++k) {
-        const Link& link = links[k];
-        const Vec2 pull = impulse_[k] * along(link);
-        output_.vx_m_s[link.a] += inverse_mass_1_kg_[link.a] * pull.x;
-        output_.vy_m_s[link.a] += inverse_mass_1_kg_[link.a] * pull.y;
-        output_.vx_m_s[link.b] -= inverse_mass_1_kg_[link.b] * pull.x;
-        output_.vy_m_s[link.b] -= inverse_mass_1_kg_[link.b] * pull.y;
-    }
-    return true;
-}
-
-bool Rattle::find_tensions() {
-    const auto links = constraints_->links();
-    tension_over_length_n_m_ = loads(constraints_->bars(), output_, forces_.uniform_m_s2());
-    if (is_elastic()) {
-        for (std::size_t k = 0; k < links.size(); ++k) {
-            const auto [a, b, rest_m] = links[k];
-            const double wa = inverse_mass_1_kg_[a];
-            const double wb = inverse_mass_1_kg_[b];
-            tension_over_length_n_m_[k] +=
-                (output_.x_m[b] - output_.x_m[a]) * (wb * force_x_n_[b] - wa * force_x_n_[a]) +
-                (output_.y_m[b] - output_.y_m[a]) * (wb * force_y_n_[b] - wa * force_y_n_[a]);
-        }
-    }
-    return constraints_->solve(output_, tension_over_length_n_m_) && constraints_->had_full_rank();
 }
 
 void Rattle::velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) {
@@ -375,42 +412,30 @@ void Rattle::velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s
     vy_m_s = output_.vy_m_s;
 }
 
-void Rattle::find_bars_of_links(const System& system) {
-    for (const Body& body : system.bodies) {
-        for (std::size_t k = body.first_bar; k < body.first_bar + body.bar_count; ++k) {
-            const Bar& bar = system.bars[k];
-            const bool moves = inverse_mass_1_kg_[bar.a] > 0.0 || inverse_mass_1_kg_[bar.b] > 0.0;
-            if (body.material.compliance_1_n == 0.0 && moves) bar_of_link_.push_back(k);
-        }
-    }
-    assert(bar_of_link_.size() == constraints_->links().size());
-}
-
 bool Rattle::tensions(std::vector<double>& tension_n) {
-    if (!constraints_->determines_tensions()) return Solver::tensions(tension_n);
+    const ConstraintSolver& constraints = *model_.constraints;
+    if (!constraints.determines_tensions()) return Solver::tensions(tension_n);
     // The factors of complete() serve again. Without full rank the matrix would have to be factorised again,
     // which takes long.
-    const bool are_known = constraints_->had_full_rank() && find_tensions();
+    const bool are_known = constraints.had_full_rank() && find_multipliers(model_, output_, multiplier_);
     for (std::size_t k = 0; k < bar_of_link_.size(); ++k) {
-        const auto [a, b, rest_m] = constraints_->links()[k];
-        const double length_m = length(output_.x_m[b] - output_.x_m[a], output_.y_m[b] - output_.y_m[a]);
+        const Vec2 d = along(constraints.links()[k], output_);
         tension_n[bar_of_link_[k]] =
-            are_known ? tension_over_length_n_m_[k] * length_m : std::numeric_limits<double>::quiet_NaN();
+            are_known ? multiplier_[k] * length(d.x, d.y) : std::numeric_limits<double>::quiet_NaN();
     }
-    elastic_.tensions(output_.x_m.data(), output_.y_m.data(), tension_n);
+    model_.elastic.tensions(output_.x_m.data(), output_.y_m.data(), tension_n);
     return true;
 }
 
 double Rattle::energy_j() const {
     double energy_j = 0.0;
     for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
-        if (inverse_mass_1_kg_[i] == 0.0) continue;
-        const double vx = output_.vx_m_s[i];
-        const double vy = output_.vy_m_s[i];
-        energy_j += mass_kg_[i] *
-                    (0.5 * (vx * vx + vy * vy) + forces_.potential_j_kg({output_.x_m[i], output_.y_m[i]}));
+        if (model_.constraints->bars().inverse_mass_1_kg[i] == 0.0) continue;
+        const Vec2 velocity{output_.vx_m_s[i], output_.vy_m_s[i]};
+        energy_j += mass_kg_[i] * (0.5 * dot(velocity, velocity) +
+                                   model_.forces.potential_j_kg({output_.x_m[i], output_.y_m[i]}));
     }
-    if (is_elastic()) energy_j += elastic_.energy_j(output_.x_m.data(), output_.y_m.data());
+    if (!model_.elastic.empty()) energy_j += model_.elastic.energy_j(output_.x_m.data(), output_.y_m.data());
     return energy_j;
 }
 

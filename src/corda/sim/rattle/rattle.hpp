@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "corda/sim/forces/elastic_forces.hpp"
@@ -24,6 +25,39 @@ struct Composition {
 /// The composition of that order: 2, 4 (Suzuki, 5 stages), 6 (Kahan and Li, 9 stages) or 8 (Kahan and Li, 17
 /// stages). The numbers are those of Hairer, Lubich, Wanner, Geometric Numerical Integration, V.3.2.
 [[nodiscard]] const Composition& composition(int order);
+
+/// A trajectory at the end of a stage, before the second half of the stage's kick.
+struct Trajectory {
+    Motion motion;
+    double last_span_s = 0.0;        ///< of that stage; 0 at the start
+    std::vector<double> multiplier;  ///< of every rigid bar in the last stage: impulse over kick, N / m
+    int level = 0;                   ///< a step is taken in 2^level parts
+    double frequency_1_s = 0.0;      ///< bound on the largest frequency, from `multiplier` and ElasticForces
+    bool has_leapt = false;
+};
+
+/// What the trajectories of a system share: the equations of motion, the composition, and memory.
+struct RattleModel {
+    const Composition& composition;
+    double guard = 0.0;  ///< see RattleDef
+    std::unique_ptr<ConstraintSolver> constraints;
+    Forces forces;
+    ElasticForces elastic;
+    // Of the last evaluation; empty without elastic forces.
+    std::vector<double> force_x_n = {};
+    std::vector<double> force_y_n = {};
+
+    // Parts of the grid's steps: their number, and the multipliers of the last ones, from which those of the
+    // next part are guessed.
+    static constexpr int kHistory = 3;
+    std::uint64_t parts = 0;
+    std::vector<double> history = {};  ///< [age][stage][link]
+    int known = 0;                     ///< parts in a row of the same span, up to kHistory
+    int newest = 0;
+
+    std::vector<double> impulse = {};  ///< scratch, one entry per link
+    Trajectory part_start = {};        ///< scratch: from which a part that fails is repeated
+};
 
 /// Method `rattle`: RATTLE composed to order 2, 4, 6 or 8 (section 3.4 of src/corda/sim/README.md). Between
 /// stages the solver omits the impulses that make velocities consistent and merges adjacent half kicks.
@@ -61,82 +95,32 @@ class Rattle final : public Solver {
     [[nodiscard]] bool has_branched() const override { return has_branched_; }
 
     [[nodiscard]] std::vector<MethodDef> methods() const override {
-        return {RattleDef{order_, step_s_, guard_}};
+        return {RattleDef{model_.composition.order, step_s_, model_.guard}};
     }
 
     [[nodiscard]] double step_s() const { return step_s_; }
     /// Parts of grid steps taken so far: equal to steps() while no step is divided.
-    [[nodiscard]] std::uint64_t parts() const { return parts_; }
+    [[nodiscard]] std::uint64_t parts() const { return model_.parts; }
 
   private:
-    /// A trajectory at the end of a stage, before the second half of the stage's kick.
-    struct Trajectory {
-        Motion motion;
-        double last_span_s = 0.0;        ///< of that stage; 0 at the start
-        std::vector<double> multiplier;  ///< of every rigid bar in the last stage: impulse over kick, N / m
-        int level = 0;                   ///< a step is taken in 2^level parts
-        double frequency_1_s = 0.0;  ///< bound on the largest frequency, from `multiplier` and ElasticForces
-        bool has_leapt = false;
-    };
-    /// Multipliers of the last parts of a step, from which those of the next part are guessed.
-    struct History {
-        std::vector<double> multipliers;  ///< [age][stage][link]
-        int count = 0;                    ///< known parts in a row of the same span, up to kHistory
-        int newest = 0;
-    };
-    static constexpr int kHistory = 3;
-
+    /// Advances the grid by one step.
     [[nodiscard]] bool step();
-    /// Advances the grid, which is near a line of bars, from the point before it past the line.
+    /// The same from the point before the grid's, which is near a line of bars, past the line.
     [[nodiscard]] bool step_over_line();
-    /// Advances by `span_s` in as many parts as are needed.
-    [[nodiscard]] bool advance(double span_s, Trajectory& trajectory, History* history);
-    [[nodiscard]] bool take_part(double part_s, Trajectory& trajectory, History* history);
-    /// Completes a step whose parts fail.
-    [[nodiscard]] bool leap(double span_s, Trajectory& trajectory);
-    [[nodiscard]] double* multipliers(History& history, std::size_t stage, int age) const;
-    void guess(std::size_t stage, double kick_s, const Trajectory& trajectory, History* history);
-    [[nodiscard]] bool is_elastic() const { return !elastic_.empty(); }
-    /// Writes the elastic forces at these positions to force_x_n_ and force_y_n_, and returns their bound on
-    /// the square of the largest frequency.
-    double find_forces(const Motion& motion);
-    /// Applies the stage's decay and push together with the elastic forces, and removes them from the stage.
-    /// Returns what find_forces() returns.
-    double push(double kick_s, Stage& stage, Motion& motion);
-    /// Writes a trajectory's state with complete velocities to output_.
-    [[nodiscard]] bool complete(const Trajectory& trajectory);
-    void find_bars_of_links(const System& system);
-    /// Of output_. False if bars depend on each other there.
-    [[nodiscard]] bool find_tensions();
 
-    int order_;
-    double guard_;
-    const Composition& composition_;
-    std::unique_ptr<ConstraintSolver> constraints_;
-    Forces forces_;
-    ElasticForces elastic_;
+    RattleModel model_;
     double step_s_ = 0.0;
     std::uint64_t step_ = 0;
-    std::uint64_t parts_ = 0;
     bool has_branched_ = false;  ///< at or before output_
     std::vector<double> mass_kg_;
-    std::vector<double> inverse_mass_1_kg_;
     /// Empty if the constraints do not determine the tensions.
     std::vector<std::size_t> bar_of_link_;
     Trajectory grid_;    ///< at step_ * step_s_
     Trajectory before_;  ///< a step before grid_, if that is near a line of bars
     bool is_near_line_ = false;
-    Trajectory over_;        ///< scratch of step_over_line()
-    Trajectory between_;     ///< scratch for a time between grid points
-    Trajectory part_start_;  ///< from which a part that fails is repeated
-    History history_;
-    std::vector<double> impulse_;
-    // Forces of the last evaluation, which is that of output_ whenever advance_to() has returned; empty
-    // without elastic forces.
-    std::vector<double> force_x_n_;
-    std::vector<double> force_y_n_;
-    Motion output_;                                ///< at the last requested time, with complete velocities
-    std::vector<double> tension_over_length_n_m_;  ///< of output_; scratch
+    Trajectory aside_;  ///< scratch: not on the grid
+    Motion output_;     ///< at the last requested time, with complete velocities and the model's forces
+    std::vector<double> multiplier_;  ///< of output_; scratch
 };
 
 }  // namespace corda::sim
