@@ -20,7 +20,7 @@ std::vector<Vec2> start_accelerations(ChainDynamics& dynamics) {
     const std::vector<double>& y = dynamics.initial_state();
     std::vector<double> slope(y.size());
     dynamics.derivative(y.data(), slope.data());
-    const std::size_t links = dynamics.link_count();
+    const std::size_t links = dynamics.chains().link_count();
     std::vector<Vec2> result = {{}};
     for (std::size_t i = 0; i < links; ++i) {
         const double rate = y[2 * links + i];

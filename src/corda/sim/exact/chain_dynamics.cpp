@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "corda/sim/chain_tensions.hpp"
-#include "corda/sim/defs.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::sim {
@@ -51,390 +52,139 @@ struct ClosingMatrix {
     }
 };
 
-}  // namespace
+// Numbers in parentheses are equations of src/corda/sim/exact/README.md.
 
-ChainDynamics::ChainDynamics(const System& system, std::span<const Body> bodies, const Forces& forces)
-    : forces_(forces), mass_kg_(system.mass_kg), links_(system.particle_count()) {
-    for (const Body& body : bodies) {
-        assert(body.is_chain);
-        add_body(system, body);
-    }
-    bending_ = ChainBending(system, links_, length_m_);
-    set_timescales();
-    const std::size_t links = length_m_.size();
-    for (std::vector<double>* array : {&beyond_, &cosine_, &sine_, &along_, &pivot_, &weight_, &tension_n_})
-        array->assign(links, 0.0);
-    initial_state_.assign(3 * links + extra_count_, 0.0);
-    double* const y = initial_state_.data();
-    for (Chain& chain : chains_) {
-        if (!chain.starts_pinned) chain.first_extra += 3 * links;
-        for (std::size_t i = 0; i < chain.link_count; ++i) {
-            const std::size_t before = i == 0 ? chain.first_particle : chain.particle(i - 1);
-            const Vec2 along =
-                at(system.x_m, system.y_m, chain.particle(i)) - at(system.x_m, system.y_m, before);
-            const double distance_m = length_of(along);
-            assert(distance_m > 0.0);
-            y[chain.first_link + i] = along.x / distance_m;
-            y[links + chain.first_link + i] = along.y / distance_m;
-        }
-        add_initial_velocities(system, chain, y);
-        if (!chain.starts_pinned) add_center_of_mass(system, chain, y);
-    }
-    project(y);
-}
-
-void ChainDynamics::add_body(const System& system, const Body& body) {
-    const std::size_t end = body.first_particle + body.particle_count;
-    std::vector<std::size_t> pinned;
-    for (std::size_t i = body.first_particle; i < end; ++i) {
-        if (system.is_pinned(i)) {
-            pinned.push_back(i);
-            mass_kg_[i] = 0.0;
-        }
-    }
-    if (pinned.empty()) {
-        add_chain(system, body, body.first_particle, end - 1);
-        return;
-    }
-    for (const std::size_t i : pinned) pins_.push_back({i, at(system.x_m, system.y_m, i)});
-    if (pinned.front() > body.first_particle) add_chain(system, body, pinned.front(), body.first_particle);
-    for (std::size_t k = 1; k < pinned.size(); ++k) add_chain(system, body, pinned[k - 1], pinned[k]);
-    if (pinned.back() < end - 1) add_chain(system, body, pinned.back(), end - 1);
-}
-
-void ChainDynamics::add_chain(const System& system, const Body& body, std::size_t from, std::size_t to) {
-    Chain chain;
-    chain.first_link = length_m_.size();
-    chain.runs_backwards = to < from;
-    chain.link_count = chain.runs_backwards ? from - to : to - from;
-    chain.first_particle = from;
-    chain.starts_pinned = system.is_pinned(from);
-    chain.ends_pinned = system.is_pinned(to);
-    if (chain.starts_pinned && chain.ends_pinned && chain.link_count == 1) return;  // it never moves
-    chain.start_m = at(system.x_m, system.y_m, from);
-    chain.span_m = at(system.x_m, system.y_m, to) - chain.start_m;
-    chain.inverse_mass_1_kg = system.inverse_mass_1_kg[from];
-    if (!chain.starts_pinned) {
-        chain.first_extra = extra_count_;
-        extra_count_ += 4;
-        energy_offset_j_ += mass_kg_[from] * forces_.potential_j_kg(chain.start_m);
-    }
-    double fastest_m_s = length_of(at(system.vx_m_s, system.vy_m_s, from));
-    for (std::size_t i = 0; i < chain.link_count; ++i) {
-        const std::size_t particle = chain.particle(i);
-        const std::size_t before = chain.runs_backwards ? particle : particle - 1;
-        links_[before] = {length_m_.size(), chain.runs_backwards, true};
-        length_m_.push_back(system.bars[body.first_bar + before - body.first_particle].rest_m);
-        inverse_length_1_m_.push_back(1.0 / length_m_.back());
-        inverse_mass_1_kg_.push_back(system.inverse_mass_1_kg[particle]);
-        chain.length_m += length_m_.back();
-        fastest_m_s = std::max(fastest_m_s, length_of(at(system.vx_m_s, system.vy_m_s, particle)));
-        energy_offset_j_ += mass_kg_[particle] * forces_.potential_j_kg(chain.start_m);
-    }
-    chain.inverse_timescale_1_s = forces_.inverse_timescale_1_s(chain.length_m, fastest_m_s);
-    if (chain.starts_pinned && chain.ends_pinned) refuse_taut(chain.length_m, chain.span_m, from, to);
-    chains_.push_back(chain);
-}
-
-void ChainDynamics::add_particle(const System& system, std::size_t particle, double length_m,
-                                 double inverse_timescale_1_s) {
-    Chain chain;
-    chain.first_link = link_count();
-    chain.first_particle = particle;
-    chain.starts_pinned = false;
-    chain.first_extra = initial_state_.size();
-    chain.start_m = at(system.x_m, system.y_m, particle);
-    chain.inverse_mass_1_kg = system.inverse_mass_1_kg[particle];
-    chain.length_m = length_m;
-    chain.inverse_timescale_1_s = inverse_timescale_1_s;
-    chains_.push_back(chain);
-    initial_state_.insert(initial_state_.end(), {0.0, 0.0, system.vx_m_s[particle], system.vy_m_s[particle]});
-    energy_offset_j_ += mass_kg_[particle] * forces_.potential_j_kg(chain.start_m);
-}
-
-void ChainDynamics::refuse_taut(double length_m, Vec2 span_m, std::size_t from, std::size_t to) {
-    if (length_m - length_of(span_m) > kTaut * length_m) return;
-    throw Refusal(Refusal::Reason::kTautBetweenPins,
-                  "method exact cannot work out the tensions of a rope that is taut between two pins "
-                  "(particles " +
-                      std::to_string(from) + " and " + std::to_string(to) + ", " + std::to_string(length_m) +
-                      " m apart)");
-}
-
-void ChainDynamics::set_timescales() {
-    for (Chain& chain : chains_) {
-        if (bends()) {
-            double rigidity_n_m2 = 0.0;
-            double mass_kg = chain.starts_pinned ? 0.0 : mass_kg_[chain.first_particle];
-            for (std::size_t i = 0; i < chain.link_count; ++i) {
-                rigidity_n_m2 = std::max(rigidity_n_m2, bending_.rigidity_n_m2(chain.first_link + i));
-                mass_kg += mass_kg_[chain.particle(i)];
-            }
-            // The slowest vibration of an elastic bar is faster by a factor of 3.5 (clamped) to 22 (free).
-            const double volume_m3 = chain.length_m * chain.length_m * chain.length_m;
-            chain.inverse_timescale_1_s =
-                std::max(chain.inverse_timescale_1_s, std::sqrt(rigidity_n_m2 / (mass_kg * volume_m3)));
-        }
-        if (chain.inverse_timescale_1_s == 0.0) chain.inverse_timescale_1_s = 1.0;
-    }
-}
-
-void ChainDynamics::add_initial_velocities(const System& system, const Chain& chain, double* y) {
-    const std::size_t links = link_count();
-    const auto velocity = [&](std::size_t particle) { return at(system.vx_m_s, system.vy_m_s, particle); };
-    measure_joints(chain, y);
-    // Impulses obey the equations of the tensions, with velocities in place of accelerations.
-    Vec2 before = velocity(chain.first_particle);
-    for (std::size_t i = 0; i < chain.link_count; ++i) {
-        const std::size_t link = chain.first_link + i;
-        const Vec2 after = velocity(chain.particle(i));
-        const Vec2 direction{y[link], y[links + link]};
-        along_[link] = dot(direction, after - before);
-        y[2 * links + link] = dot(left_of(direction), after - before);
-        before = after;
-    }
-    solve_tensions(chain);
-    for (std::size_t i = 0; i < chain.link_count; ++i) {
-        const std::size_t link = chain.first_link + i;
-        y[2 * links + link] = (y[2 * links + link] + pull_across(chain, i)) * inverse_length_1_m_[link];
-    }
-}
-
-void ChainDynamics::add_center_of_mass(const System& system, const Chain& chain, double* y) {
-    double mass_kg = 0.0;
-    Vec2 momentum_n_s;
-    for (std::size_t i = chain.link_count + 1; i-- > 0;) {
-        const std::size_t particle = i == 0 ? chain.first_particle : chain.particle(i - 1);
-        mass_kg += mass_kg_[particle];
-        momentum_n_s = momentum_n_s + mass_kg_[particle] * at(system.vx_m_s, system.vy_m_s, particle);
-        if (i > 0) beyond_[chain.first_link + i - 1] = mass_kg;
-    }
-    for (std::size_t i = 0; i < chain.link_count; ++i) beyond_[chain.first_link + i] /= mass_kg;
-    double* const extra = y + chain.first_extra;
-    walk(chain, y, [&](std::size_t particle, Vec2 moved, Vec2 /*velocity*/) {
-        if (particle == chain.first_particle) extra[0] = -moved.x, extra[1] = -moved.y;
-    });
-    extra[2] = momentum_n_s.x / mass_kg;
-    extra[3] = momentum_n_s.y / mass_kg;
-}
-
-std::vector<ErrorScale> ChainDynamics::error_scales() const {
-    std::vector<ErrorScale> scales;
-    const std::size_t links = link_count();
-    scales.push_back({0, 2 * links, 1.0, 0.0});
-    for (const Chain& chain : chains_) {
-        scales.push_back({2 * links + chain.first_link, chain.link_count, chain.inverse_timescale_1_s, 1.0});
-        if (chain.starts_pinned) continue;
-        scales.push_back({chain.first_extra, 2, chain.length_m, 0.0});
-        scales.push_back({chain.first_extra + 2, 2, chain.length_m * chain.inverse_timescale_1_s, 1.0});
-    }
-    return scales;
-}
-
-double ChainDynamics::inverse_timescale_1_s() const {
-    double largest = 0.0;
-    for (const Chain& chain : chains_) largest = std::max(largest, chain.inverse_timescale_1_s);
-    return largest > 0.0 ? largest : 1.0;
-}
-
-template <bool kBends>
-void ChainDynamics::find_tensions(const Chain& chain, const double* y) {
-    if (chain.link_count == 0) return;
-    measure_joints(chain, y);
-    measure_loads(chain, y);
-    if constexpr (kBends) add_bending_along(chain);
-    solve_tensions(chain);
-}
-
-void ChainDynamics::find_all_tensions(const double* y) {
-    if (bends()) {
-        bending_.find_couples(y);
-        for (const Chain& chain : chains_) find_tensions<true>(chain, y);
-    } else {
-        for (const Chain& chain : chains_) find_tensions<false>(chain, y);
-    }
-}
-
-void ChainDynamics::measure_joints(const Chain& chain, const double* y) {
+/// Writes W C and W S of the joints of a chain.
+void measure_joints(const Chains& chains, const Chain& chain, const double* y, ChainTensions& of) {
     const double* const c = y + chain.first_link;
-    const double* const s = c + link_count();
-    const double* const inverse_mass = inverse_mass_1_kg_.data() + chain.first_link;
-    double* __restrict const cosine = cosine_.data() + chain.first_link;
-    double* __restrict const sine = sine_.data() + chain.first_link;
+    const double* const s = c + chains.link_count();
+    const double* const inverse_mass = chains.inverse_mass_1_kg.data() + chain.first_link;
+    double* __restrict const cosine = of.cosine.data() + chain.first_link;
+    double* __restrict const sine = of.sine.data() + chain.first_link;
     for (std::size_t i = 0; i + 1 < chain.link_count; ++i) {
         cosine[i] = inverse_mass[i] * (c[i] * c[i + 1] + s[i] * s[i + 1]);
         sine[i] = inverse_mass[i] * (c[i] * s[i + 1] - s[i] * c[i + 1]);
     }
 }
 
-void ChainDynamics::measure_loads(const Chain& chain, const double* y) {
+/// Solves (3) for the tensions of a chain.
+void solve_tensions(const Chains& chains, const Chain& chain, ChainTensions& of) {
     const std::size_t first = chain.first_link;
-    const std::size_t last = first + chain.link_count - 1;
-    const double* const s = y + link_count();
-    const double* const omega = y + 2 * link_count();
-    const double* const length = length_m_.data();
-    const Vec2 uniform_m_s2 = forces_.uniform_m_s2();
-    double* __restrict const along = along_.data();
-    for (std::size_t i = first; i <= last; ++i) along[i] = length[i] * (omega[i] * omega[i]);
-    if (chain.starts_pinned) along[first] += dot(uniform_m_s2, {y[first], s[first]});
-    if (chain.ends_pinned) along[last] -= dot(uniform_m_s2, {y[last], s[last]});
+    sim::solve_tensions({chain.link_count, chain.inverse_mass_1_kg, &chains.inverse_mass_1_kg[first],
+                         &of.cosine[first], &of.sine[first]},
+                        &of.along[first], &of.pivot[first], &of.weight[first], &of.tension_n[first]);
 }
 
-void ChainDynamics::solve_tensions(const Chain& chain) {
-    const std::size_t first = chain.first_link;
-    sim::solve_tensions({chain.link_count, chain.inverse_mass_1_kg, &inverse_mass_1_kg_[first],
-                         &cosine_[first], &sine_[first]},
-                        &along_[first], &pivot_[first], &weight_[first], &tension_n_[first]);
-}
-
-double ChainDynamics::pull_across(const Chain& chain, std::size_t link) const {
+/// The terms of (4) with the tensions of a link's neighbours; the link is counted from the chain's first one.
+double pull_across(const Chain& chain, const ChainTensions& of, std::size_t link) {
     const std::size_t i = chain.first_link + link;
-    const double after = link + 1 < chain.link_count ? sine_[i] * tension_n_[i + 1] : 0.0;
-    const double before = link > 0 ? sine_[i - 1] * tension_n_[i - 1] : 0.0;
+    const double after = link + 1 < chain.link_count ? of.sine[i] * of.tension_n[i + 1] : 0.0;
+    const double before = link > 0 ? of.sine[i - 1] * of.tension_n[i - 1] : 0.0;
     return after - before;
 }
 
-void ChainDynamics::add_bending_along(const Chain& chain) {
-    const double* const couple = bending_.couple_n().data() + chain.first_link;
-    const double* const sine = sine_.data() + chain.first_link;
-    double* const along = along_.data() + chain.first_link;
-    for (std::size_t i = 0; i + 1 < chain.link_count; ++i) {
-        along[i] += sine[i] * couple[i + 1];
-        along[i + 1] -= sine[i] * couple[i];
-    }
-}
-
-void ChainDynamics::add_bending_across(const Chain& chain, double* slope) const {
-    const std::size_t first = chain.first_link;
-    const double* const couple = bending_.couple_n().data();
-    double* const slope_omega = slope + 2 * link_count();
-    for (std::size_t i = first; i < first + chain.link_count; ++i) {
-        const bool is_first = i == first;
-        const bool is_last = i + 1 == first + chain.link_count;
-        const double near_1_kg = is_first ? chain.inverse_mass_1_kg : inverse_mass_1_kg_[i - 1];
-        const double before = is_first ? 0.0 : cosine_[i - 1] * couple[i - 1];
-        const double after = is_last ? 0.0 : cosine_[i] * couple[i + 1];
-        slope_omega[i] +=
-            ((near_1_kg + inverse_mass_1_kg_[i]) * couple[i] - after - before) * inverse_length_1_m_[i];
-    }
-}
-
-void ChainDynamics::derivative(const double* y, double* slope) {
-    if (bends()) {
-        bending_.find_couples(y);
-        evaluate<true>(y, slope);
-    } else {
-        evaluate<false>(y, slope);
-    }
-}
-
+/// Finds the tensions of a chain with links by (3). kBends: with the couples of bending, which have been
+/// found; a parameter, so that loops have no branch.
 template <bool kBends>
-void ChainDynamics::evaluate(const double* y, double* slope) {
-    const std::size_t links = link_count();
-    const Vec2 uniform_m_s2 = forces_.uniform_m_s2();
-    const double drag_1_s = forces_.drag_1_s();
+void find_tensions(const Chains& chains, const Chain& chain, const double* y, ChainTensions& of) {
+    const std::size_t first = chain.first_link;
+    const std::size_t last = first + chain.link_count - 1;
+    measure_joints(chains, chain, y, of);
+    const double* const s = y + chains.link_count();
+    const double* const omega = s + chains.link_count();
+    const double* const length = chains.length_m.data();
+    const Vec2 uniform_m_s2 = chains.forces.uniform_m_s2();
+    double* __restrict const along = of.along.data();
+    for (std::size_t i = first; i <= last; ++i) along[i] = length[i] * (omega[i] * omega[i]);
+    if (chain.starts_pinned) along[first] += dot(uniform_m_s2, {y[first], s[first]});
+    if (chain.ends_pinned) along[last] -= dot(uniform_m_s2, {y[last], s[last]});
+    if constexpr (kBends) {
+        const std::vector<double>& couple = chains.bending.couple_n();
+        for (std::size_t i = first; i < last; ++i) {
+            along[i] += of.sine[i] * couple[i + 1];
+            along[i + 1] -= of.sine[i] * couple[i];
+        }
+    }
+    solve_tensions(chains, chain, of);
+}
+
+/// Writes the angular accelerations of a chain with links, whose tensions have been found, by (4).
+template <bool kBends>
+void accelerate(const Chains& chains, const Chain& chain, const double* y, const ChainTensions& of,
+                double* __restrict slope_omega) {
+    const double* const c = y;
+    const double* const s = c + chains.link_count();
+    const double* const omega = s + chains.link_count();
+    const double* const inverse_length = chains.inverse_length_1_m.data();
+    const double* const sine = of.sine.data();
+    const double* const tension = of.tension_n.data();
+    const double drag_1_s = chains.forces.drag_1_s();
+    const Vec2 uniform_m_s2 = chains.forces.uniform_m_s2();
+    const std::size_t first = chain.first_link;
+    const std::size_t last = first + chain.link_count - 1;
+    const auto turn_link = [&](std::size_t i, double across) {
+        slope_omega[i] = across * inverse_length[i] - drag_1_s * omega[i];
+    };
+    for (std::size_t i = first + 1; i < last; ++i) {
+        turn_link(i, sine[i] * tension[i + 1] - sine[i - 1] * tension[i - 1]);
+    }
+    turn_link(first, pull_across(chain, of, 0));
+    turn_link(last, pull_across(chain, of, chain.link_count - 1));
+    if (chain.starts_pinned)
+        slope_omega[first] += dot(uniform_m_s2, left_of({c[first], s[first]})) * inverse_length[first];
+    if (chain.ends_pinned)
+        slope_omega[last] -= dot(uniform_m_s2, left_of({c[last], s[last]})) * inverse_length[last];
+    if constexpr (kBends) {
+        const std::vector<double>& couple = chains.bending.couple_n();
+        const std::vector<double>& inverse_mass = chains.inverse_mass_1_kg;
+        for (std::size_t i = first; i <= last; ++i) {
+            const double near_1_kg = i == first ? chain.inverse_mass_1_kg : inverse_mass[i - 1];
+            const double before = i == first ? 0.0 : of.cosine[i - 1] * couple[i - 1];
+            const double after = i == last ? 0.0 : of.cosine[i] * couple[i + 1];
+            slope_omega[i] +=
+                ((near_1_kg + inverse_mass[i]) * couple[i] - after - before) * inverse_length[i];
+        }
+    }
+}
+
+/// The derivative of a state: (4) to (6).
+template <bool kBends>
+void evaluate(const Chains& chains, const double* y, ChainTensions& of, double* slope) {
+    const std::size_t links = chains.link_count();
+    const Vec2 uniform_m_s2 = chains.forces.uniform_m_s2();
+    const double drag_1_s = chains.forces.drag_1_s();
     const double* const c = y;
     const double* const s = y + links;
     const double* const omega = y + 2 * links;
     double* __restrict const slope_c = slope;
     double* __restrict const slope_s = slope + links;
-    double* __restrict const slope_omega = slope + 2 * links;
     for (std::size_t i = 0; i < links; ++i) {
         slope_c[i] = -(omega[i] * s[i]);
         slope_s[i] = omega[i] * c[i];
     }
-    for (const Chain& chain : chains_) {
-        find_tensions<kBends>(chain, y);
-        if (chain.link_count > 0) turn(chain, y, slope_omega);
-        if (!chain.starts_pinned) {
-            const double* const extra = y + chain.first_extra;
-            double* const slope_extra = slope + chain.first_extra;
-            std::copy_n(extra + 2, 2, slope_extra);
-            slope_extra[2] = uniform_m_s2.x - drag_1_s * extra[2];
-            slope_extra[3] = uniform_m_s2.y - drag_1_s * extra[3];
+    for (const Chain& chain : chains.list) {
+        if (chain.link_count > 0) {
+            find_tensions<kBends>(chains, chain, y, of);
+            accelerate<kBends>(chains, chain, y, of, slope + 2 * links);
         }
-        if constexpr (kBends) add_bending_across(chain, slope);
+        if (chain.starts_pinned) continue;
+        const double* const extra = y + chain.first_extra;
+        double* const slope_extra = slope + chain.first_extra;
+        std::copy_n(extra + 2, 2, slope_extra);
+        slope_extra[2] = uniform_m_s2.x - drag_1_s * extra[2];
+        slope_extra[3] = uniform_m_s2.y - drag_1_s * extra[3];
     }
 }
 
-void ChainDynamics::turn(const Chain& chain, const double* y, double* __restrict slope_omega) const {
-    const double* const c = y;
-    const double* const s = y + link_count();
-    const double* const omega = y + 2 * link_count();
-    const double drag_1_s = forces_.drag_1_s();
-    const Vec2 uniform_m_s2 = forces_.uniform_m_s2();
-    const std::size_t first = chain.first_link;
-    const std::size_t last = first + chain.link_count - 1;
-    const auto turn_link = [&](std::size_t i, double across) {
-        slope_omega[i] = across * inverse_length_1_m_[i] - drag_1_s * omega[i];
-    };
-    const double* const sine = sine_.data();
-    const double* const tension = tension_n_.data();
-    for (std::size_t i = first + 1; i < last; ++i) {
-        turn_link(i, sine[i] * tension[i + 1] - sine[i - 1] * tension[i - 1]);
-    }
-    turn_link(first, pull_across(chain, 0));
-    turn_link(last, pull_across(chain, chain.link_count - 1));
-    if (chain.starts_pinned)
-        slope_omega[first] += dot(uniform_m_s2, left_of({c[first], s[first]})) * inverse_length_1_m_[first];
-    if (chain.ends_pinned)
-        slope_omega[last] -= dot(uniform_m_s2, left_of({c[last], s[last]})) * inverse_length_1_m_[last];
-}
-
-void ChainDynamics::project(double* y) {
-    const std::size_t links = link_count();
-    double* __restrict const c = y;
-    double* __restrict const s = y + links;
-    for (std::size_t i = 0; i < links; ++i) {
-        const double inverse = 1.0 / std::sqrt(c[i] * c[i] + s[i] * s[i]);
-        c[i] *= inverse;
-        s[i] *= inverse;
-    }
-    for (const Chain& chain : chains_) {
-        if (chain.starts_pinned && chain.ends_pinned) close(chain, y);
-    }
-}
-
-void ChainDynamics::close(const Chain& chain, double* y) const {
-    const std::size_t links = link_count();
-    const std::size_t end = chain.first_link + chain.link_count;
-    const auto direction = [&](std::size_t i) { return Vec2{y[i], y[links + i]}; };
-    ClosingMatrix matrix;
-    for (std::size_t i = chain.first_link; i < end; ++i) matrix.add(length_m_[i], left_of(direction(i)));
-    for (int k = 0; k < kClosingSteps; ++k) {
-        Vec2 open = chain.span_m;
-        for (std::size_t i = chain.first_link; i < end; ++i) open = open - length_m_[i] * direction(i);
-        const Vec2 multiplier = matrix.solve(open);
-        for (std::size_t i = chain.first_link; i < end; ++i) {
-            const Vec2 across = left_of(direction(i));
-            const Vec2 turned = direction(i) + dot(across, multiplier) * across;
-            const double inverse = 1.0 / length_of(turned);
-            y[i] = inverse * turned.x;
-            y[links + i] = inverse * turned.y;
-        }
-    }
-    Vec2 open;
-    for (std::size_t i = chain.first_link; i < end; ++i) {
-        open = open - (length_m_[i] * y[2 * links + i]) * left_of(direction(i));
-    }
-    const Vec2 multiplier = matrix.solve(open);
-    for (std::size_t i = chain.first_link; i < end; ++i)
-        y[2 * links + i] += dot(left_of(direction(i)), multiplier);
-}
-
-double ChainDynamics::spread(const Chain& chain, const double* y) const {
-    ClosingMatrix matrix;
-    for (std::size_t i = chain.first_link; i < chain.first_link + chain.link_count; ++i)
-        matrix.add(length_m_[i], {y[i], y[link_count() + i]});
-    return matrix.regularity();
-}
-
+/// Calls visit(particle, displacement from the chain's start, velocity) for each free particle of a chain.
 template <class Visit>
-void ChainDynamics::walk(const Chain& chain, const double* y, const Visit& visit) const {
-    const std::size_t links = link_count();
-    const auto along = [&](std::size_t link) { return length_m_[link] * Vec2{y[link], y[links + link]}; };
+void walk(const Chains& chains, const Chain& chain, const double* y, const Visit& visit) {
+    const std::size_t links = chains.link_count();
+    const auto along = [&](std::size_t link) {
+        return chains.length_m[link] * Vec2{y[link], y[links + link]};
+    };
     const auto turning = [&](std::size_t link) {
-        return (length_m_[link] * y[2 * links + link]) * left_of({y[link], y[links + link]});
+        return (chains.length_m[link] * y[2 * links + link]) * left_of({y[link], y[links + link]});
     };
     Vec2 moved;
     Vec2 velocity;
@@ -442,8 +192,8 @@ void ChainDynamics::walk(const Chain& chain, const double* y, const Visit& visit
         moved = {y[chain.first_extra], y[chain.first_extra + 1]};
         velocity = {y[chain.first_extra + 2], y[chain.first_extra + 3]};
         for (std::size_t i = chain.first_link; i < chain.first_link + chain.link_count; ++i) {
-            moved = moved - beyond_[i] * along(i);
-            velocity = velocity - beyond_[i] * turning(i);
+            moved = moved - chains.beyond[i] * along(i);
+            velocity = velocity - chains.beyond[i] * turning(i);
         }
         visit(chain.first_particle, moved, velocity);
     }
@@ -455,13 +205,252 @@ void ChainDynamics::walk(const Chain& chain, const double* y, const Visit& visit
     }
 }
 
+void add_chain(Chains& chains, const System& system, const Body& body, std::size_t from, std::size_t to) {
+    Chain chain;
+    chain.first_link = chains.length_m.size();
+    chain.runs_backwards = to < from;
+    chain.link_count = chain.runs_backwards ? from - to : to - from;
+    chain.first_particle = from;
+    chain.starts_pinned = system.is_pinned(from);
+    chain.ends_pinned = system.is_pinned(to);
+    if (chain.starts_pinned && chain.ends_pinned && chain.link_count == 1) return;  // it never moves
+    chain.start_m = at(system.x_m, system.y_m, from);
+    chain.span_m = at(system.x_m, system.y_m, to) - chain.start_m;
+    chain.inverse_mass_1_kg = system.inverse_mass_1_kg[from];
+    if (!chain.starts_pinned)
+        chains.energy_offset_j += chains.mass_kg[from] * chains.forces.potential_j_kg(chain.start_m);
+    double fastest_m_s = length_of(at(system.vx_m_s, system.vy_m_s, from));
+    for (std::size_t i = 0; i < chain.link_count; ++i) {
+        const std::size_t particle = chain.particle(i);
+        const std::size_t before = chain.runs_backwards ? particle : particle - 1;
+        chains.links[before] = {chains.length_m.size(), chain.runs_backwards, true};
+        chains.length_m.push_back(system.bars[body.first_bar + before - body.first_particle].rest_m);
+        chains.inverse_length_1_m.push_back(1.0 / chains.length_m.back());
+        chains.inverse_mass_1_kg.push_back(system.inverse_mass_1_kg[particle]);
+        chain.length_m += chains.length_m.back();
+        fastest_m_s = std::max(fastest_m_s, length_of(at(system.vx_m_s, system.vy_m_s, particle)));
+        chains.energy_offset_j += chains.mass_kg[particle] * chains.forces.potential_j_kg(chain.start_m);
+    }
+    chain.inverse_timescale_1_s = chains.forces.inverse_timescale_1_s(chain.length_m, fastest_m_s);
+    if (chain.starts_pinned && chain.ends_pinned)
+        refuse_taut_between_pins(chain.length_m, chain.span_m, from, to);
+    chains.list.push_back(chain);
+}
+
+/// Cuts a rope from each pin to the next, and from an end to its pin.
+void add_body(Chains& chains, const System& system, const Body& body) {
+    const std::size_t first = body.first_particle;
+    const std::size_t end = first + body.particle_count;
+    std::optional<std::size_t> last;
+    for (std::size_t i = first; i < end; ++i) {
+        if (!system.is_pinned(i)) continue;
+        chains.mass_kg[i] = 0.0;
+        chains.pins.push_back({i, at(system.x_m, system.y_m, i)});
+        if (last || i > first) add_chain(chains, system, body, last ? *last : i, last ? i : first);
+        last = i;
+    }
+    if (!last || *last < end - 1) add_chain(chains, system, body, last.value_or(first), end - 1);
+}
+
+void set_timescales(Chains& chains) {
+    double fastest_1_s = 0.0;
+    for (Chain& chain : chains.list) {
+        if (!chains.bending.empty()) {
+            double rigidity_n_m2 = 0.0;
+            double mass_kg = chain.starts_pinned ? 0.0 : chains.mass_kg[chain.first_particle];
+            for (std::size_t i = 0; i < chain.link_count; ++i) {
+                rigidity_n_m2 = std::max(rigidity_n_m2, chains.bending.rigidity_n_m2(chain.first_link + i));
+                mass_kg += chains.mass_kg[chain.particle(i)];
+            }
+            // The slowest vibration of an elastic bar is faster by a factor of 3.5 (clamped) to 22 (free).
+            const double volume_m3 = chain.length_m * chain.length_m * chain.length_m;
+            chain.inverse_timescale_1_s =
+                std::max(chain.inverse_timescale_1_s, std::sqrt(rigidity_n_m2 / (mass_kg * volume_m3)));
+        }
+        if (chain.inverse_timescale_1_s == 0.0) chain.inverse_timescale_1_s = 1.0;
+        fastest_1_s = std::max(fastest_1_s, chain.inverse_timescale_1_s);
+    }
+    if (fastest_1_s > 0.0) chains.inverse_timescale_1_s = fastest_1_s;
+}
+
+/// Finds the masses beyond the links of a chain without a pin, and the start of its centre of mass. Requires
+/// the directions and the angular velocities.
+void start_center_of_mass(Chains& chains, const System& system, const Chain& chain) {
+    double mass_kg = 0.0;
+    Vec2 momentum_n_s;
+    for (std::size_t i = chain.link_count + 1; i-- > 0;) {
+        const std::size_t particle = i == 0 ? chain.first_particle : chain.particle(i - 1);
+        mass_kg += chains.mass_kg[particle];
+        momentum_n_s = momentum_n_s + chains.mass_kg[particle] * at(system.vx_m_s, system.vy_m_s, particle);
+        if (i > 0) chains.beyond[chain.first_link + i - 1] = mass_kg;
+    }
+    for (std::size_t i = 0; i < chain.link_count; ++i) chains.beyond[chain.first_link + i] /= mass_kg;
+    double* const extra = chains.start.data() + chain.first_extra;
+    walk(chains, chain, chains.start.data(), [&](std::size_t particle, Vec2 moved, Vec2 /*velocity*/) {
+        if (particle == chain.first_particle) extra[0] = -moved.x, extra[1] = -moved.y;
+    });
+    extra[2] = momentum_n_s.x / mass_kg;
+    extra[3] = momentum_n_s.y / mass_kg;
+}
+
+/// Makes directions unit vectors and closes chains between two pins.
+void project_chains(const Chains& chains, double* y) {
+    make_unit_vectors(chains.link_count(), y);
+    for (const Chain& chain : chains.list) {
+        if (chain.starts_pinned && chain.ends_pinned) close_between_pins(chains, chain, y);
+    }
+}
+
+/// Sets the state at t = 0.
+void set_start(Chains& chains, const System& system) {
+    const std::size_t links = chains.link_count();
+    chains.beyond.assign(links, 0.0);
+    chains.start.assign(3 * links, 0.0);
+    for (Chain& chain : chains.list) {
+        if (chain.starts_pinned) continue;
+        chain.first_extra = chains.start.size();
+        chains.start.resize(chain.first_extra + 4);
+    }
+    double* const y = chains.start.data();
+    double* const omega = y + 2 * links;
+    ChainTensions impulses(links);  // they obey (3), with velocities in place of accelerations
+    for (const Chain& chain : chains.list) {
+        std::size_t before = chain.first_particle;
+        for (std::size_t i = 0; i < chain.link_count; ++i) {
+            const std::size_t link = chain.first_link + i;
+            const std::size_t after = chain.particle(i);
+            const Vec2 along = at(system.x_m, system.y_m, after) - at(system.x_m, system.y_m, before);
+            const double distance_m = length_of(along);
+            assert(distance_m > 0.0);
+            const Vec2 direction{along.x / distance_m, along.y / distance_m};
+            y[link] = direction.x;
+            y[links + link] = direction.y;
+            const Vec2 apart =
+                at(system.vx_m_s, system.vy_m_s, after) - at(system.vx_m_s, system.vy_m_s, before);
+            impulses.along[link] = dot(direction, apart);
+            omega[link] = dot(left_of(direction), apart);
+            before = after;
+        }
+        measure_joints(chains, chain, y, impulses);
+        solve_tensions(chains, chain, impulses);
+        for (std::size_t i = 0; i < chain.link_count; ++i) {
+            const std::size_t link = chain.first_link + i;
+            omega[link] = (omega[link] + pull_across(chain, impulses, i)) * chains.inverse_length_1_m[link];
+        }
+        if (!chain.starts_pinned) start_center_of_mass(chains, system, chain);
+    }
+    project_chains(chains, y);
+}
+
+}  // namespace
+
+Chains make_chains(const System& system, std::span<const Body> bodies, const Forces& forces) {
+    Chains chains{.forces = forces, .mass_kg = system.mass_kg};
+    chains.links.resize(system.particle_count());
+    for (const Body& body : bodies) {
+        assert(body.is_chain);
+        add_body(chains, system, body);
+    }
+    chains.bending = ChainBending(system, chains.links, chains.length_m);
+    set_timescales(chains);
+    set_start(chains, system);
+    return chains;
+}
+
+void add_particle(Chains& chains, const System& system, std::size_t particle, double length_m) {
+    Chain chain;
+    chain.first_link = chains.link_count();
+    chain.first_particle = particle;
+    chain.starts_pinned = false;
+    chain.first_extra = chains.start.size();
+    chain.start_m = at(system.x_m, system.y_m, particle);
+    chain.inverse_mass_1_kg = system.inverse_mass_1_kg[particle];
+    chain.length_m = length_m;
+    chain.inverse_timescale_1_s = chains.inverse_timescale_1_s;
+    chains.list.push_back(chain);
+    chains.start.insert(chains.start.end(), {0.0, 0.0, system.vx_m_s[particle], system.vy_m_s[particle]});
+    chains.energy_offset_j += chains.mass_kg[particle] * chains.forces.potential_j_kg(chain.start_m);
+}
+
+void refuse_taut_between_pins(double length_m, Vec2 span_m, std::size_t from, std::size_t to) {
+    if (length_m - length_of(span_m) > kTaut * length_m) return;
+    throw Refusal(Refusal::Reason::kTautBetweenPins,
+                  "method exact cannot work out the tensions of a rope that is taut between two pins "
+                  "(particles " +
+                      std::to_string(from) + " and " + std::to_string(to) + ", " + std::to_string(length_m) +
+                      " m apart)");
+}
+
+void close_between_pins(const Chains& chains, const Chain& chain, double* y) {
+    const std::size_t links = chains.link_count();
+    const std::size_t end = chain.first_link + chain.link_count;
+    const auto direction = [&](std::size_t i) { return Vec2{y[i], y[links + i]}; };
+    ClosingMatrix matrix;
+    for (std::size_t i = chain.first_link; i < end; ++i)
+        matrix.add(chains.length_m[i], left_of(direction(i)));
+    for (int k = 0; k < kClosingSteps; ++k) {
+        Vec2 open = chain.span_m;
+        for (std::size_t i = chain.first_link; i < end; ++i) open = open - chains.length_m[i] * direction(i);
+        const Vec2 multiplier = matrix.solve(open);
+        for (std::size_t i = chain.first_link; i < end; ++i) {
+            const Vec2 across = left_of(direction(i));
+            const Vec2 turned = direction(i) + dot(across, multiplier) * across;
+            const double inverse = 1.0 / length_of(turned);
+            y[i] = inverse * turned.x;
+            y[links + i] = inverse * turned.y;
+        }
+    }
+    Vec2 open;
+    for (std::size_t i = chain.first_link; i < end; ++i) {
+        open = open - (chains.length_m[i] * y[2 * links + i]) * left_of(direction(i));
+    }
+    const Vec2 multiplier = matrix.solve(open);
+    for (std::size_t i = chain.first_link; i < end; ++i)
+        y[2 * links + i] += dot(left_of(direction(i)), multiplier);
+}
+
+double spread(const Chains& chains, const Chain& chain, const double* y) {
+    ClosingMatrix matrix;
+    for (std::size_t i = chain.first_link; i < chain.first_link + chain.link_count; ++i)
+        matrix.add(chains.length_m[i], {y[i], y[chains.link_count() + i]});
+    return matrix.regularity();
+}
+
+ChainDynamics::ChainDynamics(Chains chains) : chains_(std::move(chains)), scratch_(chains_.link_count()) {}
+
+void ChainDynamics::derivative(const double* y, double* slope) {
+    if (chains_.bending.empty()) {
+        evaluate<false>(chains_, y, scratch_, slope);
+    } else {
+        chains_.bending.find_couples(y);
+        evaluate<true>(chains_, y, scratch_, slope);
+    }
+}
+
+void ChainDynamics::project(double* y) {
+    project_chains(chains_, y);
+}
+
+std::vector<ErrorScale> ChainDynamics::error_scales() const {
+    std::vector<ErrorScale> scales;
+    const std::size_t links = chains_.link_count();
+    scales.push_back({0, 2 * links, 1.0, 0.0});
+    for (const Chain& chain : chains_.list) {
+        scales.push_back({2 * links + chain.first_link, chain.link_count, chain.inverse_timescale_1_s, 1.0});
+        if (chain.starts_pinned) continue;
+        scales.push_back({chain.first_extra, 2, chain.length_m, 0.0});
+        scales.push_back({chain.first_extra + 2, 2, chain.length_m * chain.inverse_timescale_1_s, 1.0});
+    }
+    return scales;
+}
+
 void ChainDynamics::positions(const double* y, State& state) const {
-    for (const Pin& pin : pins_) {
+    for (const Chains::Pin& pin : chains_.pins) {
         state.x_m[pin.particle] = pin.position_m.x;
         state.y_m[pin.particle] = pin.position_m.y;
     }
-    for (const Chain& chain : chains_) {
-        walk(chain, y, [&](std::size_t particle, Vec2 moved, Vec2 /*velocity*/) {
+    for (const Chain& chain : chains_.list) {
+        walk(chains_, chain, y, [&](std::size_t particle, Vec2 moved, Vec2 /*velocity*/) {
             state.x_m[particle] = chain.start_m.x + moved.x;
             state.y_m[particle] = chain.start_m.y + moved.y;
         });
@@ -470,8 +459,8 @@ void ChainDynamics::positions(const double* y, State& state) const {
 
 void ChainDynamics::velocities(const double* y, std::vector<double>& vx_m_s,
                                std::vector<double>& vy_m_s) const {
-    for (const Chain& chain : chains_) {
-        walk(chain, y, [&](std::size_t particle, Vec2 /*moved*/, Vec2 velocity) {
+    for (const Chain& chain : chains_.list) {
+        walk(chains_, chain, y, [&](std::size_t particle, Vec2 /*moved*/, Vec2 velocity) {
             vx_m_s[particle] = velocity.x;
             vy_m_s[particle] = velocity.y;
         });
@@ -480,20 +469,26 @@ void ChainDynamics::velocities(const double* y, std::vector<double>& vx_m_s,
 
 double ChainDynamics::energy_j(const double* y) const {
     double energy_j = 0.0;
-    for (const Chain& chain : chains_) {
-        walk(chain, y, [&](std::size_t particle, Vec2 moved, Vec2 velocity) {
-            energy_j += mass_kg_[particle] * (0.5 * dot(velocity, velocity) + forces_.potential_j_kg(moved));
+    for (const Chain& chain : chains_.list) {
+        walk(chains_, chain, y, [&](std::size_t particle, Vec2 moved, Vec2 velocity) {
+            energy_j += chains_.mass_kg[particle] *
+                        (0.5 * dot(velocity, velocity) + chains_.forces.potential_j_kg(moved));
         });
     }
-    if (bends()) energy_j += bending_.energy_j(y);
-    return energy_offset_j_ + energy_j;
+    if (!chains_.bending.empty()) energy_j += chains_.bending.energy_j(y);
+    return chains_.energy_offset_j + energy_j;
 }
 
 void ChainDynamics::tensions(const double* y, std::vector<double>& tension_n) {
-    find_all_tensions(y);
-    tension_n.assign(links_.size() - 1, 0.0);
+    const bool bends = !chains_.bending.empty();
+    if (bends) chains_.bending.find_couples(y);
+    for (const Chain& chain : chains_.list) {
+        if (chain.link_count == 0) continue;
+        (bends ? find_tensions<true> : find_tensions<false>)(chains_, chain, y, scratch_);
+    }
+    tension_n.assign(chains_.links.size() - 1, 0.0);
     for (std::size_t i = 0; i < tension_n.size(); ++i)
-        if (links_[i].moves) tension_n[i] = tension_n_[links_[i].index];
+        if (chains_.links[i].moves) tension_n[i] = scratch_.tension_n[chains_.links[i].index];
 }
 
 }  // namespace corda::sim

@@ -177,7 +177,7 @@ std::size_t order_for(double tolerance) {
 // Where all links of a chain between two pins are in line, as in a parallelogram, its tensions are quotients
 // of numbers that vanish, and at an angle a from the line rounding of 1e-16 appears as 1e-16 / a^2. The
 // motion itself is smooth, so steps must lead over the line from afar.
-constexpr double kNearLine = 3e-3;  ///< ChainDynamics::spread() of a state that steps should not start from
+constexpr double kNearLine = 3e-3;  ///< spread() of a state that steps should not start from
 constexpr double kOnLine = 1e-4;    ///< spread() on the line, in parts of that at the start of a step
 constexpr double kOver = 1.3;       ///< a step over the line, in parts of the time to it
 constexpr double kShort = 0.6;      ///< a step that cannot lead over the line, in parts of the time to it
@@ -219,11 +219,10 @@ const ChainSeries::Code& ChainSeries::code_of(bool is_wide) {
     return is_wide ? kWide : kNarrow;
 }
 
-ChainSeries::ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Chain& chain, std::size_t order,
-                         bool is_wide)
+ChainSeries::ChainSeries(const Chains& chains, const Chain& chain, std::size_t order, bool is_wide)
     : code_(&code_of(is_wide)),
       first_link_(chain.first_link),
-      link_stride_(dynamics.link_count()),
+      link_stride_(chains.link_count()),
       first_extra_(chain.first_extra),
       starts_pinned_(chain.starts_pinned),
       inverse_timescale_1_s_(chain.inverse_timescale_1_s),
@@ -234,9 +233,9 @@ ChainSeries::ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Cha
     a.links = chain.link_count;
     a.blocks = (a.links + kLanes - 1) / kLanes;
     a.meeting = kLanes * (a.blocks / 2);
-    a.drag_1_s = dynamics.forces().drag_1_s();
+    a.drag_1_s = chains.forces.drag_1_s();
     a.first_inverse_mass_1_kg = chain.inverse_mass_1_kg;
-    const Vec2 uniform_m_s2 = dynamics.forces().uniform_m_s2();
+    const Vec2 uniform_m_s2 = chains.forces.uniform_m_s2();
     if (chain.starts_pinned) a.start_pull_m_s2 = uniform_m_s2;
     if (chain.ends_pinned) a.end_pull_m_s2 = uniform_m_s2;
     if (!chain.starts_pinned) a.fall_m_s2 = uniform_m_s2;
@@ -258,9 +257,9 @@ ChainSeries::ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Cha
     a.flat.resize(std::size(arrays) * stride);
     for (std::size_t k = 0; k < std::size(arrays); ++k) *arrays[k] = a.flat[k * stride].lane.data() + kRoom;
     for (std::size_t i = 0; i < a.links; ++i) {
-        a.length_m[i] = dynamics.length_m(first_link_ + i);
+        a.length_m[i] = chains.length_m[first_link_ + i];
         a.inverse_length_1_m[i] = 1.0 / a.length_m[i];
-        a.inverse_mass_1_kg[i] = dynamics.inverse_mass_1_kg(first_link_ + i);
+        a.inverse_mass_1_kg[i] = chains.inverse_mass_1_kg[first_link_ + i];
     }
 }
 
@@ -322,12 +321,12 @@ ChainPart::ChainPart(const System& system, const Forces& forces, double toleranc
       state_(dynamics_.initial_state()) {
     output_ = state_;
     ahead_ = state_;
-    movers_.reserve(dynamics_.chains().size());
-    for (const ChainDynamics::Chain& chain : dynamics_.chains()) {
+    movers_.reserve(dynamics_.chains().list.size());
+    for (const Chain& chain : dynamics_.chains().list) {
         StepControl control = step_control(chain.inverse_timescale_1_s, tolerance);
         control.tolerance = std::max(kShareOfASeriesStep * tolerance, kMinTerm);
         control.largest_s *= kMaxSeriesStep;
-        movers_.push_back({chain, ChainSeries(dynamics_, chain, order_for(tolerance)), control});
+        movers_.push_back({chain, ChainSeries(dynamics_.chains(), chain, order_for(tolerance)), control});
     }
 }
 
@@ -346,7 +345,7 @@ Status ChainPart::step(Mover& mover) {
     const double step_s = end_s - mover.end_s;
     if (!(step_s > control.smallest_s) || mover.steps == StepControl::kMaxSteps) return Status::kDiverged;
     mover.series.evaluate(step_s, state_.data());
-    if (mover.chain.ends_pinned) dynamics_.close(mover.chain, state_.data());
+    if (mover.chain.ends_pinned) close_between_pins(dynamics_.chains(), mover.chain, state_.data());
     mover.start_s = mover.end_s;
     mover.end_s = end_s;
     ++mover.steps;
@@ -356,7 +355,7 @@ Status ChainPart::step(Mover& mover) {
 double ChainPart::past_line(Mover& mover, double step_s) {
     const auto spread = [&](double time_s) {
         mover.series.evaluate(time_s, ahead_.data());
-        return dynamics_.spread(mover.chain, ahead_.data());
+        return sim::spread(dynamics_.chains(), mover.chain, ahead_.data());
     };
     if (!(spread(step_s) < kNearLine)) return step_s;
     const double longest_s = std::max(kMaxLengthening * step_s, mover.end_s - mover.start_s);
@@ -391,7 +390,7 @@ Status ChainPart::reach(double time_s, State& state) {
         }
         if (mover.steps == 0) continue;  // output_ is the start
         mover.series.evaluate(time_s - mover.start_s, output_.data());
-        if (mover.chain.ends_pinned) dynamics_.close(mover.chain, output_.data());
+        if (mover.chain.ends_pinned) close_between_pins(dynamics_.chains(), mover.chain, output_.data());
     }
     dynamics_.positions(output_.data(), state);
     return Status::kOk;

@@ -75,7 +75,7 @@ struct SeriesArrays {
 /// bits.
 [[nodiscard]] bool has_wide_series();
 
-/// The motion of one chain of a ChainDynamics as a power series in time: sections 3 to 8 of
+/// The motion of one of some chains as a power series in time: sections 3 to 8 of
 /// src/corda/sim/exact/README.md. The tridiagonal matrix of the tensions is the same for all coefficients and
 /// is factorised once per step, from both ends.
 ///
@@ -85,8 +85,8 @@ struct SeriesArrays {
 class ChainSeries {
   public:
     /// `order`: of the series of w, 4 .. kMaxSeriesOrder (a ChainPart takes 12 and more). `chain`: one of
-    /// `dynamics`.
-    ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Chain& chain, std::size_t order,
+    /// `chains`.
+    ChainSeries(const Chains& chains, const Chain& chain, std::size_t order,
                 bool is_wide = has_wide_series());
     // Pointers lead into the arrays' own memory: it can be moved, but a copy would not be independent.
     ChainSeries(const ChainSeries&) = delete;
@@ -130,14 +130,14 @@ class ChainSeries {
 /// same.
 class ChainPart final : public Exact {
   public:
-    /// Requires one body, a chain. Throws what ChainDynamics throws.
+    /// Requires one body, a chain. Throws what make_chains() throws.
     ChainPart(const System& system, const Forces& forces, double tolerance);
 
     [[nodiscard]] std::uint64_t steps() const override;
 
   private:
     struct Mover {
-        const ChainDynamics::Chain& chain;
+        const Chain& chain;
         ChainSeries series;
         StepControl control;
         double start_s = 0.0;  ///< of the step that the series is for

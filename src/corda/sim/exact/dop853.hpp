@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -26,6 +27,17 @@ class Ode : NonCopyable {
     /// vectors, the ends of a chain at their pins). Must move it by no more than about the step's own error.
     virtual void project(double* y) { static_cast<void>(y); }
 };
+
+/// For Ode::project(): makes vectors unit vectors, all x of which come first, then all y.
+inline void make_unit_vectors(std::size_t count, double* xy) {
+    double* __restrict const x = xy;
+    double* __restrict const y = xy + count;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double inverse = 1.0 / std::sqrt(x[i] * x[i] + y[i] * y[i]);
+        x[i] *= inverse;
+        y[i] *= inverse;
+    }
+}
 
 /// The unit of the error of the components `first` .. `first + count - 1`: tolerance * (absolute + relative *
 /// |y|).

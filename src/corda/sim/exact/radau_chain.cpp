@@ -129,13 +129,12 @@ std::array<double, 3> weights_of_stages(double time, bool starts_at_0) {
 
 }  // namespace
 
-RadauChain::RadauChain(ChainDynamics& dynamics, const System& system, const ChainDynamics::Chain& chain,
-                       double tolerance)
+RadauChain::RadauChain(ChainDynamics& dynamics, const System& system, const Chain& chain, double tolerance)
     : links_(chain.link_count),
       first_link_(chain.first_link),
-      link_stride_(dynamics.link_count()),
-      pull_m_s2_(dynamics.forces().uniform_m_s2()),
-      drag_1_s_(dynamics.forces().drag_1_s()),
+      link_stride_(dynamics.chains().link_count()),
+      pull_m_s2_(dynamics.chains().forces.uniform_m_s2()),
+      drag_1_s_(dynamics.chains().forces.drag_1_s()),
       control_(step_control(chain.inverse_timescale_1_s, tolerance)),
       tolerance_m_(std::max(kShareOfAnImplicitStep * tolerance, kMinShareOfAnImplicitStep) * chain.length_m),
       chain_length_m_(chain.length_m),
@@ -159,8 +158,8 @@ RadauChain::RadauChain(ChainDynamics& dynamics, const System& system, const Chai
     for (Index i = 1; i <= links_; ++i) {
         const Index link = first_link_ + i - 1;
         const Index particle = chain.particle(i - 1);
-        length_m_[i] = dynamics.length_m(link);
-        inverse_mass_1_kg_[i] = dynamics.inverse_mass_1_kg(link);
+        length_m_[i] = dynamics.chains().length_m[link];
+        inverse_mass_1_kg_[i] = dynamics.chains().inverse_mass_1_kg[link];
         c_[i] = y[link];
         s_[i] = y[link_stride_ + link];
         omega_[i] = y[2 * link_stride_ + link];
@@ -459,7 +458,7 @@ bool ImplicitPart::can_move(const System& system, const Body& body) {
 ImplicitPart::ImplicitPart(const System& system, const Forces& forces, const ExactDef& def)
     : Exact(system, forces, def), dynamics_(system, bodies_of(system), forces) {
     output_ = dynamics_.initial_state();
-    for (const ChainDynamics::Chain& chain : dynamics_.chains())
+    for (const Chain& chain : dynamics_.chains().list)
         chains_.emplace_back(dynamics_, system, chain, def.tolerance);
 }
 

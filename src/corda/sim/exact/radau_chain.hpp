@@ -23,8 +23,7 @@ class RadauChain {
   public:
     /// `chain`: one of `dynamics` that starts pinned and ends free. The start is the chain's part of the
     /// initial state.
-    RadauChain(ChainDynamics& dynamics, const System& system, const ChainDynamics::Chain& chain,
-               double tolerance);
+    RadauChain(ChainDynamics& dynamics, const System& system, const Chain& chain, double tolerance);
 
     /// Takes one step.
     Status step();

@@ -17,12 +17,10 @@ struct Bent {
         rope.pinned = pinned;
         rope.bending_n_m2 = bending_n_m2;
         system = build_system({&rope, 1});
-        const ChainDynamics dynamics(system, system.bodies, WorldDef{});
-        std::vector<ChainLink> chain_links;
-        for (std::size_t i = 0; i < system.particle_count(); ++i) chain_links.push_back(dynamics.link(i));
-        for (std::size_t i = 0; i < dynamics.link_count(); ++i) length_m.push_back(dynamics.length_m(i));
-        y = dynamics.initial_state();
-        bending = ChainBending(system, chain_links, length_m);
+        const Chains chains = make_chains(system, system.bodies, WorldDef{});
+        length_m = chains.length_m;
+        y = chains.start;
+        bending = ChainBending(system, chains.links, length_m);
     }
     System system;
     std::vector<double> length_m;

@@ -42,7 +42,7 @@ static_assert(!std::is_copy_constructible_v<ChainSeries> && !std::is_copy_assign
 std::vector<double> trace(const RopeDef& rope, std::size_t order, bool is_wide) {
     const System system = build_system({&rope, 1});
     const ChainDynamics dynamics(system, system.bodies, WorldDef{{0.0, -9.81}, 1.0, 0.3});
-    ChainSeries series(dynamics, dynamics.chains().front(), order, is_wide);
+    ChainSeries series(dynamics.chains(), dynamics.chains().list.front(), order, is_wide);
     std::vector<double> state = dynamics.initial_state();
     std::vector<double> numbers;
     for (const double step_s : {0.01, 0.02, 0.3}) {  // the last turns links by more than is small

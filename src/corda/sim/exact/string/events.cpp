@@ -52,10 +52,10 @@ constexpr int kRootPoints = 240;
 
 }  // namespace
 
-StringDynamics::StringDynamics(const System& string, const std::vector<std::uint8_t>& is_taut,
-                               const Forces& forces)
-    : ChainDynamics(string, runs_of(is_taut), forces) {
-    double fastest_1_s = link_count() > 0 ? ChainDynamics::inverse_timescale_1_s() : 0.0;
+Chains chains_of_string(const System& string, const std::vector<std::uint8_t>& is_taut,
+                        const Forces& forces) {
+    Chains chains = make_chains(string, runs_of(is_taut), forces);
+    double fastest_1_s = chains.link_count() > 0 ? chains.inverse_timescale_1_s : 0.0;
     for (std::size_t k = 0; k < is_taut.size(); ++k) {
         if (is_taut[k] != 0 || (string.is_pinned(k) && string.is_pinned(k + 1))) continue;
         // A slack link must not exceed its rest length and come back within a small part of a step.
@@ -63,13 +63,14 @@ StringDynamics::StringDynamics(const System& string, const std::vector<std::uint
             length(string.vx_m_s[k + 1] - string.vx_m_s[k], string.vy_m_s[k + 1] - string.vy_m_s[k]);
         fastest_1_s = std::max(fastest_1_s, forces.inverse_timescale_1_s(string.bars[k].rest_m, speed_m_s));
     }
-    if (fastest_1_s > 0.0) inverse_timescale_1_s_ = fastest_1_s;
+    chains.inverse_timescale_1_s = fastest_1_s > 0.0 ? fastest_1_s : 1.0;
     const double length_m = links_length_m(string, string.bodies.front());
     for (std::size_t i = 0; i < string.particle_count(); ++i) {
         if (string.is_pinned(i)) continue;
         const bool is_held = (i > 0 && is_taut[i - 1] != 0) || (i < is_taut.size() && is_taut[i] != 0);
-        if (!is_held) add_particle(string, i, length_m, inverse_timescale_1_s_);
+        if (!is_held) add_particle(chains, string, i, length_m);
     }
+    return chains;
 }
 
 StringEvents::StringEvents(std::size_t particles)
@@ -83,7 +84,7 @@ StringEvents::StringEvents(std::size_t particles)
 }
 
 void StringEvents::start(const System& string, const std::vector<std::uint8_t>& is_taut,
-                         const StringContacts& contacts, StringDynamics& dynamics) {
+                         const StringContacts& contacts, ChainDynamics& dynamics) {
     is_taut_ = is_taut;
     state_.x_m = string.x_m;
     state_.y_m = string.y_m;
@@ -98,7 +99,7 @@ void StringEvents::start(const System& string, const std::vector<std::uint8_t>& 
     knows_start_ = false;
 }
 
-void StringEvents::read(StringDynamics& dynamics) {
+void StringEvents::read(ChainDynamics& dynamics) {
     dynamics.project(y_.data());
     dynamics.positions(y_.data(), state_);
     dynamics.tensions(y_.data(), tension_n_);
@@ -123,7 +124,7 @@ double StringEvents::measure(const Motion& motion, double time_s, double* margin
     return largest;
 }
 
-std::optional<double> StringEvents::first_in_step(Dop853& integrator, StringDynamics& dynamics) {
+std::optional<double> StringEvents::first_in_step(Dop853& integrator, ChainDynamics& dynamics) {
     const Motion motion{integrator, dynamics};
     const double start_s = integrator.old_time_s();
     const double part_s = (integrator.time_s() - start_s) / static_cast<double>(kParts);

@@ -13,21 +13,14 @@
 
 namespace corda::sim {
 
-/// The motion of a string of rigid links while the same links stay taut: each run of taut links is a chain,
-/// and so is each particle between two slack links, without a link. The tension of a slack link is 0.
-class StringDynamics final : public ChainDynamics {
-  public:
-    /// Starts from the positions and velocities of `string`, in which link k joins particles k and k + 1 and
-    /// there are no other bars. `is_taut`: one entry per link; a taut link is at its rest length and not
-    /// between two pins.
-    StringDynamics(const System& string, const std::vector<std::uint8_t>& is_taut, const Forces& forces);
-
-    /// That of the fastest run or slack link.
-    [[nodiscard]] double inverse_timescale_1_s() const override { return inverse_timescale_1_s_; }
-
-  private:
-    double inverse_timescale_1_s_ = 1.0;
-};
+/// The chains of a string of rigid links while the same links stay taut: each run of taut links, and each
+/// particle between two slack links, without a link. The tension of a slack link is 0. The time scale is that
+/// of the fastest run or slack link.
+///
+/// The start is that of `string`, in which link k joins particles k and k + 1 and there are no other bars.
+/// `is_taut`: one entry per link; a taut link is at its rest length and not between two pins.
+[[nodiscard]] Chains chains_of_string(const System& string, const std::vector<std::uint8_t>& is_taut,
+                                      const Forces& forces);
 
 /// Finds the first time in a step at which a link of a string goes slack or comes taut.
 ///
@@ -56,11 +49,11 @@ class StringEvents {
     /// From now on the links of `is_taut` are taut and the others slack. `string`: the state from which
     /// `dynamics` starts.
     void start(const System& string, const std::vector<std::uint8_t>& is_taut, const StringContacts& contacts,
-               StringDynamics& dynamics);
+               ChainDynamics& dynamics);
 
     /// The first event in the last step of `integrator`, which integrates `dynamics`: the time, to rounding,
     /// from which on a margin is not negative. std::nullopt if there is none.
-    [[nodiscard]] std::optional<double> first_in_step(Dop853& integrator, StringDynamics& dynamics);
+    [[nodiscard]] std::optional<double> first_in_step(Dop853& integrator, ChainDynamics& dynamics);
 
     /// Those found by the last first_in_step(), which may be after its event.
     [[nodiscard]] const std::vector<Miss>& misses() const { return misses_; }
@@ -73,13 +66,13 @@ class StringEvents {
     /// Data from which margins are computed.
     struct Motion {
         Dop853& integrator;
-        StringDynamics& dynamics;
+        ChainDynamics& dynamics;
     };
 
     /// Writes the margin of every link at a time within the step and returns the largest.
     double measure(const Motion& motion, double time_s, double* margin);
     /// Projects y_, a state of the dynamics, and computes positions and tensions there.
-    void read(StringDynamics& dynamics);
+    void read(ChainDynamics& dynamics);
     /// Minus the tension, or (d^2 - r^2) / (2 r), of a link at the last read().
     [[nodiscard]] double raw_margin(std::size_t link) const;
     /// A time between three negative samples of a link's margin at which the margin is not negative, with the

@@ -78,7 +78,7 @@ void refuse_taut(const System& string) {
     for (std::size_t i = 0; i < string.particle_count(); ++i) {
         if (string.is_pinned(i)) {
             if (last && i > *last + 1) {
-                ChainDynamics::refuse_taut(
+                refuse_taut_between_pins(
                     rest_m, {string.x_m[i] - string.x_m[*last], string.y_m[i] - string.y_m[*last]}, *last, i);
             }
             last = i;
@@ -147,7 +147,7 @@ bool StringPart::start(double first_step_s) {
     // Each of these costs about one update per particle.
     const std::size_t updates = 1 + string_.particle_count();
     count_work(updates);
-    dynamics_ = std::make_unique<StringDynamics>(string_, is_taut_, forces_);
+    dynamics_ = std::make_unique<ChainDynamics>(chains_of_string(string_, is_taut_, forces_));
     count_work(updates);
     StepControl control = step_control(dynamics_->inverse_timescale_1_s(), tolerance_);
     control.first_s = std::max(control.first_s, first_step_s);

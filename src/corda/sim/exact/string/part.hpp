@@ -15,10 +15,10 @@
 namespace corda::sim {
 
 /// A rope whose rigid links pull and never push. A link is taut, at its rest length, or slack and without
-/// force. Between events the taut links move as rigid chains (StringDynamics). A taut link goes slack when
-/// its tension would become negative. A slack link that reaches its rest length snaps: impulses along the
-/// links at their rest length stop their ends from separating (StringContacts). Momentum is kept, energy is
-/// lost.
+/// force. Between events the taut links move as rigid chains (chains_of_string()). A taut link goes slack
+/// when its tension would become negative. A slack link that reaches its rest length snaps: impulses along
+/// the links at their rest length stop their ends from separating (StringContacts). Momentum is kept, energy
+/// is lost.
 ///
 /// Each step is searched for events when it is taken, and the integration restarts at each event. As in
 /// Dop853, nothing depends on the requested times. Memory is allocated at events only.
@@ -66,7 +66,7 @@ class StringPart final : public Exact {
     std::vector<double> longer_m_;       ///< 0 once it is added
     StringContacts contacts_;
     StringEvents finder_;
-    std::unique_ptr<StringDynamics> dynamics_;
+    std::unique_ptr<ChainDynamics> dynamics_;
     std::unique_ptr<Dop853> integrator_;  ///< its time 0 is start_s_
     double start_s_ = 0.0;
     double known_s_ = 0.0;             ///< until then the motion is that of integrator_

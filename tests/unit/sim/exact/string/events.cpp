@@ -27,7 +27,7 @@ std::optional<Event> first_event(const RopeDef& rope, std::vector<std::uint8_t> 
     System string = build_system({&rope, 1});
     StringContacts contacts(string, WorldDef{}, 1e-9);
     EXPECT_TRUE(contacts.resolve(string, is_taut));
-    StringDynamics dynamics(string, is_taut, WorldDef{});
+    ChainDynamics dynamics(chains_of_string(string, is_taut, WorldDef{}));
     StringEvents events(string.particle_count());
     events.start(string, is_taut, contacts, dynamics);
     Dop853 integrator(dynamics, dynamics.initial_state(), dynamics.error_scales(),
@@ -109,9 +109,9 @@ System free_string() {
     return system;
 }
 
-TEST(StringDynamics, LetsLooseParticlesFallAndMovesRunsAsChains) {
+TEST(ChainsOfString, LetsLooseParticlesFallAndMovesRunsAsChains) {
     const System system = free_string();
-    StringDynamics dynamics(system, kTaut, kWorld);
+    ChainDynamics dynamics(chains_of_string(system, kTaut, kWorld));
     const std::vector<double>& y = dynamics.initial_state();
     std::vector<double> slope(y.size());
     dynamics.derivative(y.data(), slope.data());
@@ -139,9 +139,9 @@ TEST(StringDynamics, LetsLooseParticlesFallAndMovesRunsAsChains) {
     EXPECT_NE(tension_n[1], 0.0);
 }
 
-TEST(StringDynamics, KnowsAllPositionsVelocitiesAndTheEnergy) {
+TEST(ChainsOfString, KnowsAllPositionsVelocitiesAndTheEnergy) {
     const System system = free_string();
-    const StringDynamics dynamics(system, kTaut, kWorld);
+    const ChainDynamics dynamics(chains_of_string(system, kTaut, kWorld));
     const double* const y = dynamics.initial_state().data();
     State state{0.0, std::vector<double>(test::kChainParticles, NAN),
                 std::vector<double>(test::kChainParticles, NAN)};
@@ -160,27 +160,27 @@ TEST(StringDynamics, KnowsAllPositionsVelocitiesAndTheEnergy) {
     EXPECT_NEAR(dynamics.energy_j(y), energy_j, 1e-12);
 }
 
-TEST(StringDynamics, MeasuresErrorsOfEveryNumberOfAState) {
+TEST(ChainsOfString, MeasuresErrorsOfEveryNumberOfAState) {
     const System system = free_string();
-    const StringDynamics dynamics(system, kTaut, kWorld);
+    const ChainDynamics dynamics(chains_of_string(system, kTaut, kWorld));
     std::vector<int> measured(dynamics.initial_state().size(), 0);
     for (const ErrorScale& scale : dynamics.error_scales())
         for (std::size_t i = 0; i < scale.count; ++i) ++measured.at(scale.first + i);
     EXPECT_EQ(measured, std::vector<int>(measured.size(), 1));
 }
 
-TEST(StringDynamics, HasTheTimeScaleOfTheFastestSlackLink) {
+TEST(ChainsOfString, HasTheTimeScaleOfTheFastestSlackLink) {
     // Two particles of a slack link of 0.1 m that part at 20 m/s: faster than gravity alone would make them.
     RopeDef rope = reference::rope_through({{0.0, 0.0}, {0.05, 0.0}});
     rope.pinned = {};
     rope.velocity_m_s = {{-10.0, 0.0}, {10.0, 0.0}};
     System system = build_system({&rope, 1});
     system.bars[0].rest_m = 0.1;
-    const StringDynamics dynamics(system, {0}, WorldDef{});
+    const ChainDynamics dynamics(chains_of_string(system, {0}, WorldDef{}));
     EXPECT_GE(dynamics.inverse_timescale_1_s(), 20.0 / 0.1);
     rope.velocity_m_s = {};
     system = build_system({&rope, 1});
-    const StringDynamics resting(system, {0}, WorldDef{{0.0, 0.0}});
+    const ChainDynamics resting(chains_of_string(system, {0}, WorldDef{{0.0, 0.0}}));
     EXPECT_EQ(resting.inverse_timescale_1_s(), 1.0);
 }
 
