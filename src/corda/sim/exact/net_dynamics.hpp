@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "corda/core/cpu.hpp"
 #include "corda/sim/exact/dop853.hpp"
 #include "corda/sim/system.hpp"
 
@@ -25,14 +24,52 @@ struct BarGroups {
     std::vector<bool> is_held;          ///< particles that never move
 };
 
-/// The motion of one body of rigid bars in which bars turn together: opposite sides of parallelograms, and
-/// the sides of triangles (section 3.5 of src/corda/sim/README.md). A grid of r x c particles without
-/// diagonals has r + c - 2 such groups instead of 2 r c - r - c bars; a plate has one.
+/// One body of rigid bars in which bars turn together: opposite sides of parallelograms, and the sides of
+/// triangles (section 3.5 of src/corda/sim/README.md); all that never changes. A grid of r x c particles
+/// without diagonals has r + c - 2 such groups instead of 2 r c - r - c bars; a plate has one.
 ///
 /// A state has one array each of c, s and w over the groups: group g has turned since the start by the angle
 /// whose cosine and sine are c and s, and turns with the angular velocity w. Without a pin, the displacement
 /// of the centre of mass from the start and its velocity (x, y, vx, vy) follow. Positions are sums of turned
 /// bars along a tree from the pins, or from the first particle.
+struct NetModel {
+    /// A bar of the tree. `particle` is its far end; parents come first.
+    struct Arm {
+        std::uint32_t parent = 0;
+        std::uint32_t particle = 0;
+        std::size_t group = 0;  ///< `groups`: it never turns
+        Vec2 along_m;           ///< at the start
+    };
+
+    System system;
+    Forces forces;
+    std::vector<double> mass_kg = {};  ///< 0 if held
+    bool is_free = false;
+    bool has_tensions = false;
+    std::vector<Arm> arms = {};
+    std::size_t groups = 0;
+    double free_kg = 0.0;
+    Vec2 center_m = {};  ///< of mass at the start, without a pin
+    /// The sums over all particles i of m_i conj(b_ig) b_ih, as complex numbers, where b_ig is the sum of the
+    /// arms of group g on the way to i; without a pin, b_i less their mean.
+    std::vector<double> real_kg_m2 = {};
+    std::vector<double> imaginary_kg_m2 = {};
+    std::vector<Vec2> moment_kg_m = {};  ///< the sums of m_i b_ig
+    std::vector<double> start = {};
+    double inverse_timescale_1_s = 0.0;  ///< see Forces::inverse_timescale_1_s
+};
+
+/// The equations of the groups' angular accelerations in a state: a full symmetric matrix.
+struct NetEquations {
+    explicit NetEquations(std::size_t groups)
+        : inertia_kg_m2(groups * groups), right(groups + 1), square_1_s2(groups) {}
+
+    std::vector<double> inertia_kg_m2;  ///< the upper triangle
+    std::vector<double> right;          ///< torques; after solve() angular accelerations
+    std::vector<double> square_1_s2;    ///< of angular velocities
+};
+
+/// The motion of such a body.
 class NetDynamics final : public Dynamics {
   public:
     /// Requires one body. Throws corda::Refusal (kRigidGraph) if the groups could not turn independently, if
@@ -40,10 +77,10 @@ class NetDynamics final : public Dynamics {
     NetDynamics(const System& system, const Forces& forces);
     ~NetDynamics() override;
 
-    [[nodiscard]] const std::vector<double>& initial_state() const override { return initial_state_; }
+    [[nodiscard]] const std::vector<double>& initial_state() const override { return net_.start; }
     /// As those of ChainDynamics.
     [[nodiscard]] std::vector<ErrorScale> error_scales() const override;
-    [[nodiscard]] double inverse_timescale_1_s() const override { return inverse_timescale_1_s_; }
+    [[nodiscard]] double inverse_timescale_1_s() const override { return net_.inverse_timescale_1_s; }
     void derivative(const double* y, double* slope) override;
     /// Makes directions unit vectors.
     void project(double* y) override;
@@ -54,52 +91,9 @@ class NetDynamics final : public Dynamics {
     void tensions(const double* y, std::vector<double>& tension_n) override;
 
   private:
-    /// A bar of the tree. `particle` is its far end; parents come first.
-    struct Arm {
-        std::uint32_t parent = 0;
-        std::uint32_t particle = 0;
-        std::size_t group = 0;  ///< groups_: it never turns
-        Vec2 along_m;           ///< at the start
-    };
-
-    void grow_tree(const BarGroups& bars);
-    /// True if the bars outside the tree keep their lengths however the groups turn.
-    [[nodiscard]] bool turns_freely(const BarGroups& bars) const;
-    void measure_inertia();
-    void set_start(const System& system);
-    /// Replaces right_ by the angular accelerations that these torques cause, or the angular velocities that
-    /// these angular momenta have. inertia_ is overwritten.
-    void solve();
-    /// A step of solve(): eliminates the rows first .. end from those below.
-    CORDA_AVX2_CLONES void eliminate(std::size_t first, std::size_t end);
-    /// Writes inertia_ of the state to its upper triangle. Adds to right_ the torques of centrifugal forces.
-    CORDA_AVX2_CLONES void measure_torques(const double* y);
-    [[nodiscard]] Vec2 turn(const double* y, std::size_t group) const {
-        return group < groups_ ? Vec2{y[group], y[groups_ + group]} : Vec2{1.0, 0.0};
-    }
-    [[nodiscard]] Vec2 root_m(const double* y) const;
-
-    System system_;
-    Forces forces_;
-    std::vector<double> mass_kg_;  ///< 0 if held
-    bool is_free_ = false;
-    bool has_tensions_ = false;
-    std::vector<Arm> arms_;
-    std::size_t groups_ = 0;
-    double free_kg_ = 0.0;
-    Vec2 center_m_;  ///< of mass at the start, without a pin
-    /// The sums over all particles i of m_i conj(b_ig) b_ih, as complex numbers, where b_ig is the sum of the
-    /// arms of group g on the way to i; without a pin, b_i less their mean.
-    std::vector<double> real_kg_m2_;
-    std::vector<double> imaginary_kg_m2_;
-    std::vector<Vec2> moment_kg_m_;  ///< the sums of m_i b_ig
-    std::vector<double> initial_state_;
-    double inverse_timescale_1_s_ = 0.0;  ///< see Forces::inverse_timescale_1_s
-    // Scratch of an evaluation.
-    std::vector<double> inertia_kg_m2_;
-    std::vector<double> right_;
-    std::vector<double> square_1_s2_;
-    mutable State state_;
+    NetModel net_;
+    NetEquations equations_;
+    mutable State state_;                            ///< scratch
     std::unique_ptr<ConstraintSolver> constraints_;  ///< made by tensions()
 };
 
