@@ -66,19 +66,8 @@ CORDA_AVX2_CLONES void turn_links(Index links, const double* __restrict turn, co
     }
 }
 
-/// Input and output of residuals().
-struct Residuals {
-    Index links;
-    double step_s;
-    double drag_1_s;
-    const double *length_m, *inverse_mass, *omega;
-    const double *turn[3], *tension[3], *wc[3], *ws[3];
-    double *across, *along;
-    Complex *complex_across, *complex_along;
-};
-
 /// Residuals of (4) and (3) at the stages, with opposite signs, in the eigenvectors of B.
-CORDA_AVX2_CLONES void residuals(const Residuals& r) {
+CORDA_AVX2_CLONES void residuals(RadauChain& r) {
     const double per_step = 1.0 / r.step_s;
     for (Index i = 1; i <= r.links; ++i) {
         double speed[3];
@@ -94,8 +83,8 @@ CORDA_AVX2_CLONES void residuals(const Residuals& r) {
             const double last = r.tension[k][i - 1];
             across[k] =
                 r.ws[k][i] * next - r.ws[k][i - 1] * last - r.length_m[i] * (slope + r.drag_1_s * speed[k]);
-            along[k] = (r.inverse_mass[i - 1] + r.inverse_mass[i]) * r.tension[k][i] - r.wc[k][i] * next -
-                       r.wc[k][i - 1] * last - r.length_m[i] * (speed[k] * speed[k]);
+            along[k] = (r.inverse_mass_1_kg[i - 1] + r.inverse_mass_1_kg[i]) * r.tension[k][i] -
+                       r.wc[k][i] * next - r.wc[k][i - 1] * last - r.length_m[i] * (speed[k] * speed[k]);
         }
         const auto combine = [](const double* x, int row) {
             return kTo[row][0] * x[0] + kTo[row][1] * x[1] + kTo[row][2] * x[2];
@@ -127,197 +116,190 @@ std::array<double, 3> weights_of_stages(double time, bool starts_at_0) {
     return weights;
 }
 
-}  // namespace
+void measure_joints(RadauChain& r) {
+    for (Index j = 1; j < r.links; ++j) {
+        r.joint_c[j] = r.c[j] * r.c[j + 1] + r.s[j] * r.s[j + 1];
+        r.joint_s[j] = r.c[j] * r.s[j + 1] - r.s[j] * r.c[j + 1];
+    }
+}
 
-RadauChain::RadauChain(ChainDynamics& dynamics, const System& system, const Chain& chain, double tolerance)
-    : links_(chain.link_count),
-      first_link_(chain.first_link),
-      link_stride_(dynamics.chains().link_count()),
-      pull_m_s2_(dynamics.chains().forces.uniform_m_s2()),
-      drag_1_s_(dynamics.chains().forces.drag_1_s()),
-      control_(step_control(chain.inverse_timescale_1_s, tolerance)),
-      tolerance_m_(std::max(kShareOfAnImplicitStep * tolerance, kMinShareOfAnImplicitStep) * chain.length_m),
-      chain_length_m_(chain.length_m),
-      step_s_(control_.first_s) {
-    const auto resize = [this](Array& array) { array.assign(links_ + 2, 0.0); };
-    for (Array* array : {&length_m_, &inverse_mass_1_kg_, &c_, &s_, &omega_, &slope_, &old_c_, &old_s_,
-                         &old_omega_, &old_slope_, &turned_, &joint_c_, &joint_s_, &matrix_wc_, &matrix_ws_,
-                         &matrix_tension_, &matrix_omega_, &across_, &along_})
+/// A chain of `dynamics` that starts pinned and ends free, at its initial state.
+RadauChain make_radau_chain(ChainDynamics& dynamics, const System& system, const Chain& chain,
+                            double tolerance) {
+    const Chains& chains = dynamics.chains();
+    RadauChain r;
+    r.links = chain.link_count;
+    r.first_link = chain.first_link;
+    r.link_stride = chains.link_count();
+    r.pull_m_s2 = chains.forces.uniform_m_s2();
+    r.drag_1_s = chains.forces.drag_1_s();
+    r.control = step_control(chain.inverse_timescale_1_s, tolerance);
+    r.tolerance_m = std::max(kShareOfAnImplicitStep * tolerance, kMinShareOfAnImplicitStep) * chain.length_m;
+    r.chain_length_m = chain.length_m;
+    r.step_s = r.control.first_s;
+    const auto resize = [&r](RadauChain::Array& array) { array.assign(r.links + 2, 0.0); };
+    for (RadauChain::Array* array :
+         {&r.length_m, &r.inverse_mass_1_kg, &r.c, &r.s, &r.omega, &r.slope, &r.old_c, &r.old_s, &r.old_omega,
+          &r.old_slope, &r.turned, &r.joint_c, &r.joint_s, &r.matrix_wc, &r.matrix_ws, &r.matrix_tension,
+          &r.matrix_omega, &r.across, &r.along})
         resize(*array);
-    for (Stages* stages : {&turn_, &tension_, &old_turn_, &old_tension_, &wc_, &ws_})
+    for (RadauChain::Stages* stages : {&r.turn, &r.tension, &r.old_turn, &r.old_tension, &r.wc, &r.ws})
         std::for_each(stages->begin(), stages->end(), resize);
-    complex_across_.resize(links_ + 2);
-    complex_along_.resize(links_ + 2);
-    pivots_.resize(links_ + 2);
-    complex_pivots_.resize(links_ + 2);
+    r.complex_across.resize(r.links + 2);
+    r.complex_along.resize(r.links + 2);
+    r.pivots.resize(r.links + 2);
+    r.complex_pivots.resize(r.links + 2);
     const double* const y = dynamics.initial_state().data();
     std::vector<double> slope(dynamics.initial_state().size());
     std::vector<double> tension_n(system.bars.size());
     dynamics.derivative(y, slope.data());
     dynamics.tensions(y, tension_n);
-    for (Index i = 1; i <= links_; ++i) {
-        const Index link = first_link_ + i - 1;
+    for (Index i = 1; i <= r.links; ++i) {
+        const Index link = r.first_link + i - 1;
         const Index particle = chain.particle(i - 1);
-        length_m_[i] = dynamics.chains().length_m[link];
-        inverse_mass_1_kg_[i] = dynamics.chains().inverse_mass_1_kg[link];
-        c_[i] = y[link];
-        s_[i] = y[link_stride_ + link];
-        omega_[i] = y[2 * link_stride_ + link];
-        slope_[i] = slope[2 * link_stride_ + link];
-        for (Array& stage : old_tension_)
+        r.length_m[i] = chains.length_m[link];
+        r.inverse_mass_1_kg[i] = chains.inverse_mass_1_kg[link];
+        r.c[i] = y[link];
+        r.s[i] = y[r.link_stride + link];
+        r.omega[i] = y[2 * r.link_stride + link];
+        r.slope[i] = slope[2 * r.link_stride + link];
+        for (RadauChain::Array& stage : r.old_tension)
             stage[i] = tension_n[chain.runs_backwards ? particle : particle - 1];
     }
-    for (Index j = 1; j < links_; ++j) {
-        joint_c_[j] = c_[j] * c_[j + 1] + s_[j] * s_[j + 1];
-        joint_s_[j] = c_[j] * s_[j + 1] - s_[j] * c_[j + 1];
-    }
+    measure_joints(r);
+    return r;
 }
 
-void RadauChain::predict() {
-    if (last_step_s_ == 0.0) {
-        for (Array& stage : turn_) std::fill(stage.begin(), stage.end(), 0.0);
-        tension_ = old_tension_;
+void predict(RadauChain& r) {
+    if (r.last_step_s == 0.0) {
+        for (RadauChain::Array& stage : r.turn) std::fill(stage.begin(), stage.end(), 0.0);
+        r.tension = r.old_tension;
         return;
     }
-    const double ratio = step_s_ / last_step_s_;
-    for (Index k = 0; k < kStages; ++k) {
+    const double ratio = r.step_s / r.last_step_s;
+    for (Index k = 0; k < RadauChain::kStages; ++k) {
         const double time = 1.0 + ratio * kTime[k];
         std::array<double, 3> of_turn = weights_of_stages(time, true);
         of_turn[2] -= 1.0;
         const std::array<double, 3> of_tension = weights_of_stages(time, false);
-        for (Index i = 1; i <= links_; ++i) {
-            turn_[k][i] =
-                of_turn[0] * old_turn_[0][i] + of_turn[1] * old_turn_[1][i] + of_turn[2] * old_turn_[2][i];
-            tension_[k][i] = of_tension[0] * old_tension_[0][i] + of_tension[1] * old_tension_[1][i] +
-                             of_tension[2] * old_tension_[2][i];
+        for (Index i = 1; i <= r.links; ++i) {
+            r.turn[k][i] =
+                of_turn[0] * r.old_turn[0][i] + of_turn[1] * r.old_turn[1][i] + of_turn[2] * r.old_turn[2][i];
+            r.tension[k][i] = of_tension[0] * r.old_tension[0][i] + of_tension[1] * r.old_tension[1][i] +
+                              of_tension[2] * r.old_tension[2][i];
         }
     }
 }
 
-void RadauChain::find_residuals() {
-    Residuals r{links_,
-                step_s_,
-                drag_1_s_,
-                length_m_.data(),
-                inverse_mass_1_kg_.data(),
-                omega_.data(),
-                {},
-                {},
-                {},
-                {},
-                across_.data(),
-                along_.data(),
-                complex_across_.data(),
-                complex_along_.data()};
-    for (Index k = 0; k < kStages; ++k) {
-        turn_joints(links_, joint_c_.data(), joint_s_.data(), inverse_mass_1_kg_.data(), turn_[k].data(),
-                    wc_[k].data(), ws_[k].data());
-        r.turn[k] = turn_[k].data();
-        r.tension[k] = tension_[k].data();
-        r.wc[k] = wc_[k].data();
-        r.ws[k] = ws_[k].data();
+void find_residuals(RadauChain& r) {
+    for (Index k = 0; k < RadauChain::kStages; ++k) {
+        turn_joints(r.links, r.joint_c.data(), r.joint_s.data(), r.inverse_mass_1_kg.data(), r.turn[k].data(),
+                    r.wc[k].data(), r.ws[k].data());
     }
     residuals(r);
-    for (Index k = 0; k < kStages; ++k) {
-        const Pull here = pull_of(pull_m_s2_, c_[1], s_[1], turn_[k][1]);
-        across_[1] += kTo[0][k] * here.across;
-        along_[1] -= kTo[0][k] * here.along;
-        complex_across_[1] = complex_across_[1] + here.across * Complex{kTo[1][k], kTo[2][k]};
-        complex_along_[1] = complex_along_[1] - here.along * Complex{kTo[1][k], kTo[2][k]};
+    for (Index k = 0; k < RadauChain::kStages; ++k) {
+        const Pull here = pull_of(r.pull_m_s2, r.c[1], r.s[1], r.turn[k][1]);
+        r.across[1] += kTo[0][k] * here.across;
+        r.along[1] -= kTo[0][k] * here.along;
+        r.complex_across[1] = r.complex_across[1] + here.across * Complex{kTo[1][k], kTo[2][k]};
+        r.complex_along[1] = r.complex_along[1] - here.along * Complex{kTo[1][k], kTo[2][k]};
     }
 }
 
-Matrix RadauChain::matrix() const {
-    return {length_m_.data(),  inverse_mass_1_kg_.data(), matrix_wc_.data(),
-            matrix_ws_.data(), matrix_tension_.data(),    matrix_omega_.data()};
+Matrix matrix_of(const RadauChain& r) {
+    return {r.length_m.data(),  r.inverse_mass_1_kg.data(), r.matrix_wc.data(),
+            r.matrix_ws.data(), r.matrix_tension.data(),    r.matrix_omega.data()};
 }
 
-void RadauChain::factorise() {
+void factorise(RadauChain& r) {
     constexpr Index kMiddle = 1;
-    turn_joints(links_, joint_c_.data(), joint_s_.data(), inverse_mass_1_kg_.data(), turn_[kMiddle].data(),
-                matrix_wc_.data(), matrix_ws_.data());
-    matrix_tension_ = tension_[kMiddle];
-    const double per_step = 1.0 / step_s_;
-    for (Index i = 1; i <= links_; ++i) {
-        matrix_omega_[i] = per_step * slope_at(kMiddle, turn_[0][i], turn_[1][i], turn_[2][i]);
+    turn_joints(r.links, r.joint_c.data(), r.joint_s.data(), r.inverse_mass_1_kg.data(),
+                r.turn[kMiddle].data(), r.matrix_wc.data(), r.matrix_ws.data());
+    r.matrix_tension = r.tension[kMiddle];
+    const double per_step = 1.0 / r.step_s;
+    for (Index i = 1; i <= r.links; ++i) {
+        r.matrix_omega[i] = per_step * slope_at(kMiddle, r.turn[0][i], r.turn[1][i], r.turn[2][i]);
     }
-    const Matrix matrix = this->matrix();
+    const Matrix matrix = matrix_of(r);
     const double rate = kReal * per_step;
     const Complex pair = per_step * kPair;
-    const double square = rate * rate + drag_1_s_ * rate;
-    const Complex pair_square = pair * pair + drag_1_s_ * pair;
-    Pull pull = pull_of(pull_m_s2_, c_[1], s_[1], turn_[kMiddle][1]);
-    for (Index i = 1; i <= links_; ++i) {
-        matrix.eliminate(i, pull, rate, square, pivots_.data());
-        matrix.eliminate(i, pull, pair, pair_square, complex_pivots_.data());
+    const double square = rate * rate + r.drag_1_s * rate;
+    const Complex pair_square = pair * pair + r.drag_1_s * pair;
+    Pull pull = pull_of(r.pull_m_s2, r.c[1], r.s[1], r.turn[kMiddle][1]);
+    for (Index i = 1; i <= r.links; ++i) {
+        matrix.eliminate(i, pull, rate, square, r.pivots.data());
+        matrix.eliminate(i, pull, pair, pair_square, r.complex_pivots.data());
         pull = {};
     }
 }
 
-void RadauChain::solve() {
-    const Matrix matrix = this->matrix();
-    for (Index i = 1; i <= links_; ++i) {
-        matrix.forward(i, pivots_[i], across_.data(), along_.data());
-        matrix.forward(i, complex_pivots_[i], complex_across_.data(), complex_along_.data());
+void solve(RadauChain& r) {
+    const Matrix matrix = matrix_of(r);
+    for (Index i = 1; i <= r.links; ++i) {
+        matrix.forward(i, r.pivots[i], r.across.data(), r.along.data());
+        matrix.forward(i, r.complex_pivots[i], r.complex_across.data(), r.complex_along.data());
     }
-    for (Index i = links_; i > 0; --i) {
-        backward(i, pivots_[i], across_.data(), along_.data());
-        backward(i, complex_pivots_[i], complex_across_.data(), complex_along_.data());
+    for (Index i = r.links; i > 0; --i) {
+        backward(i, r.pivots[i], r.across.data(), r.along.data());
+        backward(i, r.complex_pivots[i], r.complex_across.data(), r.complex_along.data());
     }
 }
 
-double RadauChain::displacement_m(const Array& angle) const {
+/// Largest displacement of a particle if the links turn by these small angles.
+double displacement_m(const RadauChain& r, const RadauChain::Array& angle) {
     double x_m = 0.0;
     double y_m = 0.0;
     double largest_m2 = 0.0;
-    for (Index i = 1; i <= links_; ++i) {
-        const double moved_m = length_m_[i] * angle[i];
-        x_m -= s_[i] * moved_m;
-        y_m += c_[i] * moved_m;
+    for (Index i = 1; i <= r.links; ++i) {
+        const double moved_m = r.length_m[i] * angle[i];
+        x_m -= r.s[i] * moved_m;
+        y_m += r.c[i] * moved_m;
         const double square_m2 = x_m * x_m + y_m * y_m;
         if (!(square_m2 <= largest_m2)) largest_m2 = square_m2;  // keeps a NaN
     }
     return std::sqrt(largest_m2);
 }
 
-double RadauChain::correct() {
+/// Returns the largest displacement in m of a particle by the correction at the end of the step; infinite if
+/// the stages cannot be used.
+double correct(RadauChain& r) {
     double farthest = 0.0;
     double sharpest = 0.0;
-    for (Index i = 1; i <= links_; ++i) {
-        const double across[] = {across_[i], complex_across_[i].re, complex_across_[i].im};
-        const double along[] = {along_[i], complex_along_[i].re, complex_along_[i].im};
-        for (Index k = 0; k < kStages; ++k) {
-            turn_[k][i] += kFrom[k][0] * across[0] + kFrom[k][1] * across[1] + kFrom[k][2] * across[2];
-            tension_[k][i] += kFrom[k][0] * along[0] + kFrom[k][1] * along[1] + kFrom[k][2] * along[2];
+    for (Index i = 1; i <= r.links; ++i) {
+        const double across[] = {r.across[i], r.complex_across[i].re, r.complex_across[i].im};
+        const double along[] = {r.along[i], r.complex_along[i].re, r.complex_along[i].im};
+        for (Index k = 0; k < RadauChain::kStages; ++k) {
+            r.turn[k][i] += kFrom[k][0] * across[0] + kFrom[k][1] * across[1] + kFrom[k][2] * across[2];
+            r.tension[k][i] += kFrom[k][0] * along[0] + kFrom[k][1] * along[1] + kFrom[k][2] * along[2];
         }
-        turned_[i] = kFrom[2][0] * across[0] + kFrom[2][1] * across[1];
-        sharpest = std::max(sharpest, std::abs(turned_[i]));
-        const double turn = std::abs(turn_[2][i]);
+        r.turned[i] = kFrom[2][0] * across[0] + kFrom[2][1] * across[1];
+        sharpest = std::max(sharpest, std::abs(r.turned[i]));
+        const double turn = std::abs(r.turn[2][i]);
         if (!(turn <= farthest)) farthest = turn;
     }
     return farthest <= kMaxTurn
-               ? std::max(displacement_m(turned_), kShareOfAngle * chain_length_m_ * sharpest)
+               ? std::max(displacement_m(r, r.turned), kShareOfAngle * r.chain_length_m * sharpest)
                : std::numeric_limits<double>::infinity();
 }
 
-bool RadauChain::solve_stages() {
-    predict();
-    factorise();
-    const double enough_m = std::max(kShareOfNewton * tolerance_m_, kMinCorrection * chain_length_m_);
+bool solve_stages(RadauChain& r) {
+    predict(r);
+    factorise(r);
+    const double enough_m = std::max(kShareOfNewton * r.tolerance_m, kMinCorrection * r.chain_length_m);
     double last_m = 0.0;
-    for (iterations_ = 1; iterations_ <= kMaxIterations; ++iterations_) {
-        count_work(1 + kUpdatesPerIteration * links_);
-        find_residuals();
-        solve();
-        const double correction_m = correct();
+    for (r.iterations = 1; r.iterations <= kMaxIterations; ++r.iterations) {
+        count_work(1 + kUpdatesPerIteration * r.links);
+        find_residuals(r);
+        solve(r);
+        const double correction_m = correct(r);
         if (correction_m <= enough_m) return true;
         if (!std::isfinite(correction_m)) return false;
-        if (iterations_ > 1) {
+        if (r.iterations > 1) {
             const double rate = correction_m / last_m;
             if (!(rate < 1.0)) return false;
             double left_m = correction_m * rate / (1.0 - rate);
             if (left_m <= enough_m) return true;
-            for (int k = iterations_; k < kMaxIterations; ++k) left_m *= rate;
+            for (int k = r.iterations; k < kMaxIterations; ++k) left_m *= rate;
             if (left_m > enough_m) return false;
         }
         last_m = correction_m;
@@ -325,123 +307,128 @@ bool RadauChain::solve_stages() {
     return false;
 }
 
-double RadauChain::error_m() {
-    const Matrix matrix = this->matrix();
-    const double rate = kReal / step_s_;
-    for (Index i = 1; i <= links_; ++i) {
-        double turn = step_s_ * omega_[i];
-        double speed = step_s_ * slope_[i];
-        for (Index k = 0; k < kStages; ++k) {
-            const double omega = slope_at(k, turn_[0][i], turn_[1][i], turn_[2][i]) / step_s_;
-            turn += kErrorWeights[k] * turn_[k][i];
-            speed += kErrorWeights[k] * (omega - omega_[i]);
+/// Estimated error of the step in m.
+double error_m(RadauChain& r) {
+    const Matrix matrix = matrix_of(r);
+    const double rate = kReal / r.step_s;
+    for (Index i = 1; i <= r.links; ++i) {
+        double turn = r.step_s * r.omega[i];
+        double speed = r.step_s * r.slope[i];
+        for (Index k = 0; k < RadauChain::kStages; ++k) {
+            const double omega = slope_at(k, r.turn[0][i], r.turn[1][i], r.turn[2][i]) / r.step_s;
+            turn += kErrorWeights[k] * r.turn[k][i];
+            speed += kErrorWeights[k] * (omega - r.omega[i]);
         }
         turn /= kReal;
         speed /= kReal;
-        across_[i] = length_m_[i] * rate * ((rate + drag_1_s_) * turn + speed);
-        along_[i] = 2.0 * length_m_[i] * matrix_omega_[i] * rate * turn;
+        r.across[i] = r.length_m[i] * rate * ((rate + r.drag_1_s) * turn + speed);
+        r.along[i] = 2.0 * r.length_m[i] * r.matrix_omega[i] * rate * turn;
     }
-    for (Index i = 1; i <= links_; ++i) matrix.forward(i, pivots_[i], across_.data(), along_.data());
-    for (Index i = links_; i > 0; --i) backward(i, pivots_[i], across_.data(), along_.data());
-    return displacement_m(across_);
+    for (Index i = 1; i <= r.links; ++i) matrix.forward(i, r.pivots[i], r.across.data(), r.along.data());
+    for (Index i = r.links; i > 0; --i) backward(i, r.pivots[i], r.across.data(), r.along.data());
+    return displacement_m(r, r.across);
 }
 
-double RadauChain::buckling_1_s() const {
+/// Bound on the rate in 1/s at which compressed links buckle; 0 without compression. Steps resolve it,
+/// because an implicit method would damp it.
+double buckling_1_s(const RadauChain& r) {
     constexpr Index kEnd = 2;
     double fastest = 0.0;
-    for (Index i = 1; i <= links_; ++i) {
-        const double pull_n = wc_[kEnd][i - 1] * tension_[kEnd][i - 1] + wc_[kEnd][i] * tension_[kEnd][i + 1];
-        fastest = std::max(fastest, -2.0 * pull_n / length_m_[i]);
+    for (Index i = 1; i <= r.links; ++i) {
+        const double pull_n =
+            r.wc[kEnd][i - 1] * r.tension[kEnd][i - 1] + r.wc[kEnd][i] * r.tension[kEnd][i + 1];
+        fastest = std::max(fastest, -2.0 * pull_n / r.length_m[i]);
     }
     return std::sqrt(fastest);
 }
 
-void RadauChain::accept() {
-    std::swap(old_c_, c_);
-    std::swap(old_s_, s_);
-    turned_ = turn_[2];
-    turn_links(links_ + 2, turned_.data(), old_c_.data(), old_s_.data(), c_.data(), s_.data());
-    for (Index i = 1; i <= links_; ++i) {
-        double omega[kStages];
-        for (Index k = 0; k < kStages; ++k)
-            omega[k] = slope_at(k, turn_[0][i], turn_[1][i], turn_[2][i]) / step_s_;
-        old_omega_[i] = omega_[i];
-        old_slope_[i] = slope_[i];
-        slope_[i] = slope_at(2, omega[0] - omega_[i], omega[1] - omega_[i], omega[2] - omega_[i]) / step_s_;
-        omega_[i] = omega[2];
+void accept(RadauChain& r) {
+    std::swap(r.old_c, r.c);
+    std::swap(r.old_s, r.s);
+    r.turned = r.turn[2];
+    turn_links(r.links + 2, r.turned.data(), r.old_c.data(), r.old_s.data(), r.c.data(), r.s.data());
+    for (Index i = 1; i <= r.links; ++i) {
+        double omega[RadauChain::kStages];
+        for (Index k = 0; k < RadauChain::kStages; ++k)
+            omega[k] = slope_at(k, r.turn[0][i], r.turn[1][i], r.turn[2][i]) / r.step_s;
+        r.old_omega[i] = r.omega[i];
+        r.old_slope[i] = r.slope[i];
+        r.slope[i] =
+            slope_at(2, omega[0] - r.omega[i], omega[1] - r.omega[i], omega[2] - r.omega[i]) / r.step_s;
+        r.omega[i] = omega[2];
     }
-    for (Index j = 1; j < links_; ++j) {
-        joint_c_[j] = c_[j] * c_[j + 1] + s_[j] * s_[j + 1];
-        joint_s_[j] = c_[j] * s_[j + 1] - s_[j] * c_[j + 1];
-    }
-    std::swap(old_turn_, turn_);
-    std::swap(old_tension_, tension_);
-    start_s_ = end_s_;
-    end_s_ += step_s_;
-    last_step_s_ = step_s_;
-    ++steps_;
+    measure_joints(r);
+    std::swap(r.old_turn, r.turn);
+    std::swap(r.old_tension, r.tension);
+    r.start_s = r.end_s;
+    r.end_s += r.step_s;
+    r.last_step_s = r.step_s;
+    ++r.steps;
 }
 
-double RadauChain::next_factor() {
+/// Solves a step of step_s. Returns the next step in parts of it; minus that, if it must be repeated.
+double next_factor(RadauChain& r) {
     constexpr double kCaution = 0.9;
     constexpr double kMinFactor = 0.125;
     constexpr double kMaxFactor = 8.0;
     constexpr double kEnough = 1.2;  // a change that is worth another matrix
-    if (!solve_stages()) return -0.5;
-    const double buckling = step_s_ * buckling_1_s();
+    if (!solve_stages(r)) return -0.5;
+    const double buckling = r.step_s * buckling_1_s(r);
     if (buckling > 1.0) return -std::max(kMinFactor, kCaution / buckling);
-    const double error = std::max(error_m() / tolerance_m_, kMinError);
-    const double safety = kCaution * (2 * kMaxIterations + 1) / (2 * kMaxIterations + iterations_);
+    const double error = std::max(error_m(r) / r.tolerance_m, kMinError);
+    const double safety = kCaution * (2 * kMaxIterations + 1) / (2 * kMaxIterations + r.iterations);
     double factor = safety / std::sqrt(std::sqrt(error));
     if (!(error <= 1.0)) return -std::max(kMinFactor, factor);
     // Gustafsson's predictive controller.
-    if (last_step_s_ > 0.0)
-        factor *= std::min(1.0, step_s_ / last_step_s_ * std::sqrt(std::sqrt(last_error_ / error)));
-    last_error_ = std::max(error, kMinLastError);
+    if (r.last_step_s > 0.0)
+        factor *= std::min(1.0, r.step_s / r.last_step_s * std::sqrt(std::sqrt(r.last_error / error)));
+    r.last_error = std::max(error, kMinLastError);
     factor = std::clamp(factor, kMinFactor, kMaxFactor);
     if (buckling > 0.0) factor = std::min(factor, 1.0 / buckling);
     return factor > 1.0 && factor < kEnough ? 1.0 : factor;
 }
 
-Status RadauChain::step() {
+Status step(RadauChain& r) {
     double most = std::numeric_limits<double>::infinity();  // no growth after a rejected step
     for (;;) {
-        if (!(step_s_ > control_.smallest_s) || steps_ == StepControl::kMaxSteps) return Status::kDiverged;
+        if (!(r.step_s > r.control.smallest_s) || r.steps == StepControl::kMaxSteps) return Status::kDiverged;
         // Time and step agree to the last bit, so that no rounding of times adds up.
-        step_s_ = (end_s_ + step_s_) - end_s_;
-        const double factor = next_factor();
+        r.step_s = (r.end_s + r.step_s) - r.end_s;
+        const double factor = next_factor(r);
         if (factor > 0.0) {
-            accept();
-            step_s_ = std::min(std::min(factor, most) * last_step_s_, control_.largest_s);
+            accept(r);
+            r.step_s = std::min(std::min(factor, most) * r.last_step_s, r.control.largest_s);
             return Status::kOk;
         }
-        step_s_ *= -factor;
+        r.step_s *= -factor;
         most = 1.0;
-        ++rejected_;
+        ++r.rejected_steps;
     }
 }
 
-void RadauChain::interpolate(double time_s, double* y) const {
-    const double h = last_step_s_;
-    const double x = (time_s - start_s_) / h;
-    double* const c = y + first_link_;
-    double* const omega = c + 2 * link_stride_;
-    std::vector<double> turn(links_);
-    for (Index i = 0; i < links_; ++i) {
+/// Writes the chain's part of the state at `time_s`, within the last step, to `y`.
+void interpolate(RadauChain& r, double time_s, double* y) {
+    const double h = r.last_step_s;
+    const double x = (time_s - r.start_s) / h;
+    double* const c = y + r.first_link;
+    double* const omega = c + 2 * r.link_stride;
+    for (Index i = 0; i < r.links; ++i) {
         // Hermite's polynomial of degree 5.
-        const double end = turned_[i + 1];
-        const double d0 = h * old_omega_[i + 1];
-        const double d1 = h * omega_[i + 1];
-        const double e0 = h * h * old_slope_[i + 1];
-        const double e1 = h * h * slope_[i + 1];
+        const double end = r.turned[i + 1];
+        const double d0 = h * r.old_omega[i + 1];
+        const double d1 = h * r.omega[i + 1];
+        const double e0 = h * h * r.old_slope[i + 1];
+        const double e1 = h * h * r.slope[i + 1];
         const double p3 = 10.0 * end - 6.0 * d0 - 4.0 * d1 - 1.5 * e0 + 0.5 * e1;
         const double p4 = -15.0 * end + 8.0 * d0 + 7.0 * d1 + 1.5 * e0 - e1;
         const double p5 = 6.0 * end - 3.0 * (d0 + d1) + 0.5 * (e1 - e0);
-        turn[i] = x * (d0 + x * (0.5 * e0 + x * (p3 + x * (p4 + x * p5))));
+        r.across[i + 1] = x * (d0 + x * (0.5 * e0 + x * (p3 + x * (p4 + x * p5))));
         omega[i] = (d0 + x * (e0 + x * (3.0 * p3 + x * (4.0 * p4 + x * (5.0 * p5))))) / h;
     }
-    turn_links(links_, turn.data(), &old_c_[1], &old_s_[1], c, c + link_stride_);
+    turn_links(r.links, &r.across[1], &r.old_c[1], &r.old_s[1], c, c + r.link_stride);
 }
+
+}  // namespace
 
 bool ImplicitPart::can_move(const System& system, const Body& body) {
     if (!body.is_chain || body.material.is_string || body.material.compliance_1_n > 0.0) return false;
@@ -459,16 +446,16 @@ ImplicitPart::ImplicitPart(const System& system, const Forces& forces, const Exa
     : Exact(system, forces, def), dynamics_(system, bodies_of(system), forces) {
     output_ = dynamics_.initial_state();
     for (const Chain& chain : dynamics_.chains().list)
-        chains_.emplace_back(dynamics_, system, chain, def.tolerance);
+        chains_.push_back(make_radau_chain(dynamics_, system, chain, def.tolerance));
 }
 
 Status ImplicitPart::reach(double time_s, State& state) {
     if (!std::isfinite(time_s)) return Status::kDiverged;
     for (RadauChain& chain : chains_) {
-        while (chain.end_s() < time_s) {
-            if (chain.step() == Status::kDiverged) return Status::kDiverged;
+        while (chain.end_s < time_s) {
+            if (step(chain) == Status::kDiverged) return Status::kDiverged;
         }
-        if (chain.steps() > 0) chain.interpolate(time_s, output_.data());
+        if (chain.steps > 0) interpolate(chain, time_s, output_.data());
     }
     dynamics_.positions(output_.data(), state);
     return Status::kOk;
@@ -476,13 +463,13 @@ Status ImplicitPart::reach(double time_s, State& state) {
 
 std::uint64_t ImplicitPart::steps() const {
     return std::accumulate(chains_.begin(), chains_.end(), std::uint64_t{0},
-                           [](std::uint64_t sum, const RadauChain& chain) { return sum + chain.steps(); });
+                           [](std::uint64_t sum, const RadauChain& chain) { return sum + chain.steps; });
 }
 
 std::uint64_t ImplicitPart::rejected_steps() const {
     return std::accumulate(
         chains_.begin(), chains_.end(), std::uint64_t{0},
-        [](std::uint64_t sum, const RadauChain& chain) { return sum + chain.rejected_steps(); });
+        [](std::uint64_t sum, const RadauChain& chain) { return sum + chain.rejected_steps; });
 }
 
 }  // namespace corda::sim
