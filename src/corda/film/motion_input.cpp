@@ -75,10 +75,11 @@ std::optional<double> kinetic_after_j(const System& body, const WorldDef& world,
     const MethodDef projecting = is_relaxed ? RattleDef{} : method;
     try {
         const auto solver = sim::make_solver(body, world, {&projecting, 1}, frame_interval_s);
-        std::vector<double> vx_m_s(body.particle_count());
-        std::vector<double> vy_m_s(body.particle_count());
-        solver->velocities(vx_m_s, vy_m_s);
-        return kinetic_j(body, vx_m_s, vy_m_s);
+        State state;
+        state.vx_m_s.resize(body.particle_count());
+        state.vy_m_s.resize(body.particle_count());
+        solver->velocities(state);
+        return kinetic_j(body, state.vx_m_s, state.vy_m_s);
     } catch (const Refusal&) {
         return std::nullopt;
     }

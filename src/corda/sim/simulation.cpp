@@ -104,7 +104,7 @@ void Simulation::read() {
     if (fields_.velocities) {
         state_.vx_m_s.assign(state_.x_m.size(), 0.0);
         state_.vy_m_s.assign(state_.x_m.size(), 0.0);
-        solver_->velocities(state_.vx_m_s, state_.vy_m_s);
+        solver_->velocities(state_);
     }
     if (!fields_.tensions) return;
     state_.tension_n = tension_n_;

@@ -100,7 +100,7 @@ class BodySolvers final : public Solver {
     Status advance_to(double time_s, State& state) override;
     [[nodiscard]] double energy_j() const override;
     [[nodiscard]] bool has_branched() const override;
-    void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override;
+    void velocities(State& state) override;
     [[nodiscard]] bool tensions(std::vector<double>& tension_n) override;
     /// The sum over all bodies.
     [[nodiscard]] std::uint64_t steps() const override;
@@ -174,13 +174,13 @@ bool BodySolvers::has_branched() const {
     return std::ranges::any_of(parts_, [](const Part& part) { return part.solver->has_branched(); });
 }
 
-void BodySolvers::velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) {
+void BodySolvers::velocities(State& state) {
     for (Part& part : parts_) {
         part.state.vx_m_s.assign(part.state.x_m.size(), 0.0);
         part.state.vy_m_s.assign(part.state.x_m.size(), 0.0);
-        part.solver->velocities(part.state.vx_m_s, part.state.vy_m_s);
-        put(part.state.vx_m_s, part.first_particle, vx_m_s);
-        put(part.state.vy_m_s, part.first_particle, vy_m_s);
+        part.solver->velocities(part.state);
+        put(part.state.vx_m_s, part.first_particle, state.vx_m_s);
+        put(part.state.vy_m_s, part.first_particle, state.vy_m_s);
     }
 }
 

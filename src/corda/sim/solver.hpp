@@ -61,8 +61,9 @@ class Solver : NonCopyable {
     /// False if damping takes energy on purpose.
     [[nodiscard]] bool conserves_energy() const { return conserves_energy_; }
 
-    /// Writes the velocities of the free particles at the last `advance_to`, in m/s, to arrays of all.
-    virtual void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) = 0;
+    /// Writes the velocities of the free particles at the last `advance_to` to `state`, which has room for
+    /// those of all.
+    virtual void velocities(State& state) = 0;
 
     /// Writes the tensions of moving bars after the last `advance_to`, in N, to an array of all bars. Returns
     /// false if the method of a body does not know them; they are then NaN.

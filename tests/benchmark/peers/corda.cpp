@@ -17,7 +17,7 @@ class CordaRun : public Run {
     void read(State& state) override {
         state.x_m = state_.x_m;
         state.y_m = state_.y_m;
-        solver_->velocities(state.vx_m_s, state.vy_m_s);
+        solver_->velocities(state);
     }
 
   private:

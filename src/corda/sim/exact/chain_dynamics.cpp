@@ -457,12 +457,11 @@ void ChainDynamics::positions(const double* y, State& state) const {
     }
 }
 
-void ChainDynamics::velocities(const double* y, std::vector<double>& vx_m_s,
-                               std::vector<double>& vy_m_s) const {
+void ChainDynamics::velocities(const double* y, State& state) const {
     for (const Chain& chain : chains_.list) {
         walk(chains_, chain, y, [&](std::size_t particle, Vec2 /*moved*/, Vec2 velocity) {
-            vx_m_s[particle] = velocity.x;
-            vy_m_s[particle] = velocity.y;
+            state.vx_m_s[particle] = velocity.x;
+            state.vy_m_s[particle] = velocity.y;
         });
     }
 }

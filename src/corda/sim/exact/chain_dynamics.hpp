@@ -116,7 +116,7 @@ class ChainDynamics final : public Dynamics {
     /// Makes directions unit vectors and closes chains between two pins.
     void project(double* y) override;
     void positions(const double* y, State& state) const override;
-    void velocities(const double* y, std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) const override;
+    void velocities(const double* y, State& state) const override;
     [[nodiscard]] double energy_j(const double* y) const override;
     /// Entry i belongs to the link between particle i of the system and the next one; 0 without a link.
     void tensions(const double* y, std::vector<double>& tension_n) override;

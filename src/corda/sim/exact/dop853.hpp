@@ -142,8 +142,7 @@ class Dynamics : public Ode {
     [[nodiscard]] virtual double energy_j(const double* y) const = 0;
 
     /// Writes the velocities of the particles whose positions positions() writes, in m/s.
-    virtual void velocities(const double* y, std::vector<double>& vx_m_s,
-                            std::vector<double>& vy_m_s) const = 0;
+    virtual void velocities(const double* y, State& state) const = 0;
 
     /// Writes the tensions of the bars that move, in N, a positive one pulls, to an array of all bars. Not
     /// const: it may use the scratch memory of derivative().

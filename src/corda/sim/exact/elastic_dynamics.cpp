@@ -111,10 +111,9 @@ double ElasticDynamics::energy_j(const double* y) const {
     return energy_j;
 }
 
-void ElasticDynamics::velocities(const double* y, std::vector<double>& vx_m_s,
-                                 std::vector<double>& vy_m_s) const {
-    std::copy_n(y + 2 * count_, count_, vx_m_s.begin());
-    std::copy_n(y + 3 * count_, count_, vy_m_s.begin());
+void ElasticDynamics::velocities(const double* y, State& state) const {
+    std::copy_n(y + 2 * count_, count_, state.vx_m_s.begin());
+    std::copy_n(y + 3 * count_, count_, state.vy_m_s.begin());
 }
 
 }  // namespace corda::sim

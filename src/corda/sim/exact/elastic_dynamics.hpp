@@ -35,7 +35,7 @@ class ElasticDynamics final : public Dynamics {
 
     void positions(const double* y, State& state) const override;
     [[nodiscard]] double energy_j(const double* y) const override;
-    void velocities(const double* y, std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) const override;
+    void velocities(const double* y, State& state) const override;
     void tensions(const double* y, std::vector<double>& tension_n) override {
         elastic_.tensions(y, y + count_, tension_n);
     }

@@ -39,9 +39,7 @@ class Exact : public Solver {
 
     Status advance_to(double time_s, State& state) final;
     [[nodiscard]] double energy_j() const override { return dynamics().energy_j(output_.data()); }
-    void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override {
-        dynamics().velocities(output_.data(), vx_m_s, vy_m_s);
-    }
+    void velocities(State& state) override { dynamics().velocities(output_.data(), state); }
     [[nodiscard]] bool tensions(std::vector<double>& tension_n) override {
         dynamics().tensions(output_.data(), tension_n);
         return std::ranges::none_of(tension_n, [](double n) { return std::isnan(n); });

@@ -282,7 +282,9 @@ Vec2 turn_of(const NetModel& net, const double* y, std::size_t group) {
 }  // namespace
 
 NetDynamics::NetDynamics(const System& system, const Forces& forces)
-    : net_(make_net(system, forces)), equations_(net_.groups), state_{0.0, system.x_m, system.y_m} {}
+    : net_(make_net(system, forces)),
+      equations_(net_.groups),
+      state_{0.0, system.x_m, system.y_m, system.vx_m_s, system.vy_m_s} {}
 
 NetDynamics::~NetDynamics() = default;
 
@@ -348,8 +350,7 @@ void NetDynamics::positions(const double* y, State& state) const {
     }
 }
 
-void NetDynamics::velocities(const double* y, std::vector<double>& vx_m_s,
-                             std::vector<double>& vy_m_s) const {
+void NetDynamics::velocities(const double* y, State& state) const {
     std::vector<Vec2> spin;
     Vec2 root;
     for (std::size_t g = 0; g < net_.groups; ++g) {
@@ -358,24 +359,22 @@ void NetDynamics::velocities(const double* y, std::vector<double>& vx_m_s,
     }
     spin.push_back({});
     for (std::size_t i = 0; i < net_.mass_kg.size(); ++i) {
-        if (net_.mass_kg[i] == 0.0) vx_m_s[i] = vy_m_s[i] = 0.0;
+        if (net_.mass_kg[i] == 0.0) state.vx_m_s[i] = state.vy_m_s[i] = 0.0;
     }
     if (net_.is_free) {
-        vx_m_s[0] = y[3 * net_.groups + 2] + root.x / net_.free_kg;
-        vy_m_s[0] = y[3 * net_.groups + 3] + root.y / net_.free_kg;
+        state.vx_m_s[0] = y[3 * net_.groups + 2] + root.x / net_.free_kg;
+        state.vy_m_s[0] = y[3 * net_.groups + 3] + root.y / net_.free_kg;
     }
     for (const NetModel::Arm& arm : net_.arms) {
         const Vec2 turns = times(arm.along_m, spin[arm.group]);
-        vx_m_s[arm.particle] = vx_m_s[arm.parent] + turns.x;
-        vy_m_s[arm.particle] = vy_m_s[arm.parent] + turns.y;
+        state.vx_m_s[arm.particle] = state.vx_m_s[arm.parent] + turns.x;
+        state.vy_m_s[arm.particle] = state.vy_m_s[arm.parent] + turns.y;
     }
 }
 
 double NetDynamics::energy_j(const double* y) const {
     positions(y, state_);
-    state_.vx_m_s.resize(net_.mass_kg.size());
-    state_.vy_m_s.resize(net_.mass_kg.size());
-    velocities(y, state_.vx_m_s, state_.vy_m_s);
+    velocities(y, state_);
     double energy_j = 0.0;
     for (std::size_t i = 0; i < net_.mass_kg.size(); ++i) {
         const Vec2 velocity{state_.vx_m_s[i], state_.vy_m_s[i]};
@@ -399,7 +398,9 @@ void NetDynamics::tensions(const double* y, std::vector<double>& tension_n) {
     positions(y, state_);
     motion.x_m = state_.x_m;
     motion.y_m = state_.y_m;
-    velocities(y, motion.vx_m_s, motion.vy_m_s);
+    velocities(y, state_);
+    motion.vx_m_s = state_.vx_m_s;
+    motion.vy_m_s = state_.vy_m_s;
     std::vector<double> load = loads(constraints_->bars(), motion, net_.forces.uniform_m_s2());
     if (!constraints_->solve(motion, load) || !constraints_->had_full_rank()) return;
     std::size_t link = 0;

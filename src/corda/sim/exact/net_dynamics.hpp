@@ -86,7 +86,7 @@ class NetDynamics final : public Dynamics {
     void project(double* y) override;
     void positions(const double* y, State& state) const override;
     [[nodiscard]] double energy_j(const double* y) const override;
-    void velocities(const double* y, std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) const override;
+    void velocities(const double* y, State& state) const override;
     /// NaN if bars depend on each other, because the distribution of the load is then arbitrary.
     void tensions(const double* y, std::vector<double>& tension_n) override;
 

@@ -407,9 +407,9 @@ bool Rattle::step_over_line() {
     return true;
 }
 
-void Rattle::velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) {
-    vx_m_s = output_.vx_m_s;
-    vy_m_s = output_.vy_m_s;
+void Rattle::velocities(State& state) {
+    state.vx_m_s = output_.vx_m_s;
+    state.vy_m_s = output_.vy_m_s;
 }
 
 bool Rattle::tensions(std::vector<double>& tension_n) {

@@ -87,7 +87,7 @@ class Rattle final : public Solver {
 
     Status advance_to(double time_s, State& state) override;
     [[nodiscard]] double energy_j() const override;
-    void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override;
+    void velocities(State& state) override;
     /// Those that keep the second derivatives of the rigid bars' lengths 0. Unknown if bars depend on each
     /// other, because the distribution of the load among them is then arbitrary.
     [[nodiscard]] bool tensions(std::vector<double>& tension_n) override;

@@ -192,10 +192,10 @@ void Relaxation::interpolate(double fraction, State& state) const {
     }
 }
 
-void Relaxation::velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) {
-    for (std::size_t i = 0; i < vx_m_s.size(); ++i) {
-        vx_m_s[i] = motion_.moves[i].move_m[0] / step_s_;
-        vy_m_s[i] = motion_.moves[i].move_m[1] / step_s_;
+void Relaxation::velocities(State& state) {
+    for (std::size_t i = 0; i < state.vx_m_s.size(); ++i) {
+        state.vx_m_s[i] = motion_.moves[i].move_m[0] / step_s_;
+        state.vy_m_s[i] = motion_.moves[i].move_m[1] / step_s_;
     }
 }
 

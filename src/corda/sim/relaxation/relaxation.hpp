@@ -27,7 +27,7 @@ class Relaxation final : public Solver {
     Status advance_to(double time_s, State& state) override;
     [[nodiscard]] double energy_j() const override;
     /// The last move over the step.
-    void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override;
+    void velocities(State& state) override;
     [[nodiscard]] std::uint64_t steps() const override { return step_; }
     [[nodiscard]] std::vector<MethodDef> methods() const override { return {def_}; }
 

@@ -14,23 +14,30 @@ namespace {
 
 const WorldDef kWorld{{0.7, -9.81}, 1.0, 0.3};
 
+/// The velocities of all particles; 0 of pinned ones, which are not written.
+State velocities(const ChainDynamics& dynamics, const std::vector<double>& y) {
+    const std::vector<double> none(test::kChainParticles);
+    State state{0.0, {}, {}, none, none};
+    dynamics.velocities(y.data(), state);
+    return state;
+}
+
 /// Of the particles, by the derivative of their velocities along the motion.
 std::vector<Vec2> accelerations(const ChainDynamics& dynamics, const std::vector<double>& y,
                                 const std::vector<double>& slope) {
     constexpr double kStep = 1e-6;
-    const auto velocities = [&](double step_s) {
-        std::vector<double> moved = y;
-        for (std::size_t i = 0; i < y.size(); ++i) moved[i] += step_s * slope[i];
-        std::vector<double> vx(test::kChainParticles);
-        std::vector<double> vy(test::kChainParticles);
-        dynamics.velocities(moved.data(), vx, vy);
-        return std::pair(vx, vy);
+    const auto moved = [&](double step_s) {
+        std::vector<double> there = y;
+        for (std::size_t i = 0; i < y.size(); ++i) there[i] += step_s * slope[i];
+        return velocities(dynamics, there);
     };
-    const auto [later_x, later_y] = velocities(kStep);
-    const auto [earlier_x, earlier_y] = velocities(-kStep);
+    const State later = moved(kStep);
+    const State earlier = moved(-kStep);
     std::vector<Vec2> result;
-    for (std::size_t i = 0; i < later_x.size(); ++i)
-        result.push_back((0.5 / kStep) * Vec2{later_x[i] - earlier_x[i], later_y[i] - earlier_y[i]});
+    for (std::size_t i = 0; i < later.vx_m_s.size(); ++i) {
+        result.push_back((0.5 / kStep) *
+                         Vec2{later.vx_m_s[i] - earlier.vx_m_s[i], later.vy_m_s[i] - earlier.vy_m_s[i]});
+    }
     return result;
 }
 
@@ -47,9 +54,9 @@ TEST(ChainDynamics, ObeysNewtonsLawWithItsTensions) {
         const std::vector<Vec2> acceleration = accelerations(dynamics, y, slope);
         State state{0.0, system.x_m, system.y_m};
         dynamics.positions(y.data(), state);
-        std::vector<double> vx(test::kChainParticles);
-        std::vector<double> vy(test::kChainParticles);
-        dynamics.velocities(y.data(), vx, vy);
+        const State at_start = velocities(dynamics, y);
+        const std::vector<double>& vx = at_start.vx_m_s;
+        const std::vector<double>& vy = at_start.vy_m_s;
         // What the bar from one particle to the next does to the first.
         const auto pull = [&](std::size_t i) {
             const Vec2 along{state.x_m[i + 1] - state.x_m[i], state.y_m[i + 1] - state.y_m[i]};
@@ -72,9 +79,9 @@ TEST(ChainDynamics, ObeysNewtonsLawWithItsTensions) {
 TEST(ChainDynamics, StartsWithoutVelocitiesAlongItsLinks) {
     const System system = test::chain(test::Pins::kNone);
     const ChainDynamics dynamics(system, system.bodies, kWorld);
-    std::vector<double> vx(test::kChainParticles);
-    std::vector<double> vy(test::kChainParticles);
-    dynamics.velocities(dynamics.initial_state().data(), vx, vy);
+    const State at_start = velocities(dynamics, dynamics.initial_state());
+    const std::vector<double>& vx = at_start.vx_m_s;
+    const std::vector<double>& vy = at_start.vy_m_s;
     Vec2 momentum;
     Vec2 given;
     for (std::size_t i = 0; i < test::kChainParticles; ++i) {
@@ -194,9 +201,9 @@ TEST(ChainOutputs, HaveVelocitiesThatAreTheChangeOfThePositions) {
         }
         const State ahead = moving.positions(later);
         const State behind = moving.positions(earlier);
-        std::vector<double> vx(test::kChainParticles);  // 0 of pinned particles, which are not written
-        std::vector<double> vy(test::kChainParticles);
-        moving.dynamics.velocities(y.data(), vx, vy);
+        const State at_start = velocities(moving.dynamics, y);
+        const std::vector<double>& vx = at_start.vx_m_s;
+        const std::vector<double>& vy = at_start.vy_m_s;
         for (std::size_t i = 0; i < test::kChainParticles; ++i) {
             EXPECT_NEAR(vx[i], (ahead.x_m[i] - behind.x_m[i]) / (2.0 * kStep), 1e-8) << i;
             EXPECT_NEAR(vy[i], (ahead.y_m[i] - behind.y_m[i]) / (2.0 * kStep), 1e-8) << i;
@@ -210,9 +217,9 @@ TEST(ChainOutputs, HaveTheEnergyOfTheirParticles) {
         const Moving moving(test::chain(pins), world);
         const std::vector<double>& y = moving.dynamics.initial_state();
         const State state = moving.positions(y);
-        std::vector<double> vx(test::kChainParticles);
-        std::vector<double> vy(test::kChainParticles);
-        moving.dynamics.velocities(y.data(), vx, vy);
+        const State at_start = velocities(moving.dynamics, y);
+        const std::vector<double>& vx = at_start.vx_m_s;
+        const std::vector<double>& vy = at_start.vy_m_s;
         double energy_j = 0.0;
         for (std::size_t i = 0; i < test::kChainParticles; ++i) {
             if (moving.system.is_pinned(i)) continue;

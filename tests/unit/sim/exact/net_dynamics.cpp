@@ -58,12 +58,14 @@ void expect_as_rattle(const NetDef& net, const WorldDef& world, bool tells_tensi
     for (int k = 0; k <= 3; ++k) {
         ASSERT_TRUE(net_run.go(0.1 * k) && bar_run.go(0.1 * k)) << k;
         EXPECT_LT(net_run.distance_m(bar_run.state()), 1e-10) << k;  // 3e-12
-        std::vector<double> vx(net.points_m.size()), vy(vx), vx_of_bars(vx), vy_of_bars(vx);
-        net_run.solver().velocities(vx, vy);
-        bar_run.solver().velocities(vx_of_bars, vy_of_bars);
-        for (std::size_t i = 0; i < vx.size(); ++i) {
-            EXPECT_NEAR(vx[i], vx_of_bars[i], 1e-8) << k << ' ' << i;  // 3e-9
-            EXPECT_NEAR(vy[i], vy_of_bars[i], 1e-8) << k << ' ' << i;  // 2e-9
+        const std::vector<double> none(net.points_m.size());
+        State of_net{0.0, {}, {}, none, none};
+        State of_bars = of_net;
+        net_run.solver().velocities(of_net);
+        bar_run.solver().velocities(of_bars);
+        for (std::size_t i = 0; i < none.size(); ++i) {
+            EXPECT_NEAR(of_net.vx_m_s[i], of_bars.vx_m_s[i], 1e-8) << k << ' ' << i;  // 3e-9
+            EXPECT_NEAR(of_net.vy_m_s[i], of_bars.vy_m_s[i], 1e-8) << k << ' ' << i;  // 2e-9
         }
         EXPECT_NEAR(net_run.solver().energy_j(), bar_run.solver().energy_j(), 1e-7)
             << k;  // 1.6e-8, of rattle

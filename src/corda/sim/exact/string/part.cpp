@@ -110,8 +110,7 @@ StringPart::StringPart(const System& system, const Forces& forces, double tolera
                       "the start does not determine which links of a string are taut");
     }
     output_ = dynamics_->initial_state();
-    local_.x_m = string_.x_m;
-    local_.y_m = string_.y_m;
+    local_ = {0.0, string_.x_m, string_.y_m, string_.vx_m_s, string_.vy_m_s};
 }
 
 Status StringPart::reach(double time_s, State& state) {
@@ -176,9 +175,11 @@ bool StringPart::pass_event() {
     integrator_->interpolate(*event_s_, y.data());
     dynamics_->project(y.data());
     dynamics_->positions(y.data(), local_);
-    dynamics_->velocities(y.data(), string_.vx_m_s, string_.vy_m_s);
+    dynamics_->velocities(y.data(), local_);
     string_.x_m = local_.x_m;
     string_.y_m = local_.y_m;
+    string_.vx_m_s = local_.vx_m_s;
+    string_.vy_m_s = local_.vy_m_s;
     start_s_ = known_s_;
     event_s_.reset();
     steps_before_ += integrator_->accepted_steps();

@@ -143,12 +143,12 @@ TEST(ChainsOfString, KnowsAllPositionsVelocitiesAndTheEnergy) {
     const System system = free_string();
     const ChainDynamics dynamics(chains_of_string(system, kTaut, kWorld));
     const double* const y = dynamics.initial_state().data();
-    State state{0.0, std::vector<double>(test::kChainParticles, NAN),
-                std::vector<double>(test::kChainParticles, NAN)};
+    const std::vector<double> unknown(test::kChainParticles, NAN);
+    State state{0.0, unknown, unknown, unknown, unknown};
     dynamics.positions(y, state);
-    std::vector<double> vx(test::kChainParticles, NAN);
-    std::vector<double> vy(test::kChainParticles, NAN);
-    dynamics.velocities(y, vx, vy);
+    dynamics.velocities(y, state);
+    const std::vector<double>& vx = state.vx_m_s;
+    const std::vector<double>& vy = state.vy_m_s;
     double energy_j = 0.0;
     for (std::size_t i = 0; i < test::kChainParticles; ++i) {
         EXPECT_NEAR(state.x_m[i], system.x_m[i], 1e-15) << i;
