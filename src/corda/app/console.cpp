@@ -58,16 +58,6 @@ std::string duration_text(double seconds) {
 
 }  // namespace
 
-std::string printable_lines(std::string_view text) {
-    std::string lines;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find('\n', begin), text.size());
-        lines += (begin > 0 ? "\n" : "") + printable(text.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return lines;
-}
-
 Console::Console(const ConsoleDef& def)
     : def_(def),
       prints_results_(isatty(STDOUT_FILENO) == 1),

@@ -19,9 +19,6 @@ struct ConsoleDef {
     bool json = false;     ///< results on stdout as JSON in place of words
 };
 
-/// `text` with all but the ends of its lines printable (see core/text.hpp).
-[[nodiscard]] std::string printable_lines(std::string_view text);
-
 /// Results go to stdout, everything else to stderr. What a terminal shows is printable, whatever names and
 /// keys it comes from; a result that goes elsewhere keeps its bytes.
 class Console {

@@ -29,13 +29,12 @@ Scene load_with(const std::vector<Setting>& settings, const std::vector<Setting>
         std::erase_if(others, [&of_options](const Setting& setting) {
             return std::ranges::find(of_options, setting) != of_options.end();
         });
-        const std::string problem = error.what();
         try {
             static_cast<void>(load(others));
         } catch (const Error&) {
-            throw Error(ExitCode::kInvalidScene, problem);
+            throw Error(ExitCode::kInvalidScene, error.problems());
         }
-        throw Error(ExitCode::kUsage, problem);
+        throw Error(ExitCode::kUsage, error.problems());
     }
 }
 

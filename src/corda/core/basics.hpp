@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #pragma GCC visibility push(default)
 namespace corda {
@@ -32,17 +34,43 @@ enum class ExitCode : int {
     return code == ExitCode::kHungUp || code == ExitCode::kInterrupted || code == ExitCode::kTerminated;
 }
 
-/// Bad input or a bad environment. The message says what failed, the value, the library's own reason and one
-/// hint; `code` is the exit status of the program. A programmer's error is an assert instead, and a physical
-/// outcome is a returned status.
+/// A value of a file, or of a setting in its place.
+struct Place {
+    std::string source;      ///< the file, or "--set world.drag=-1"; may be empty
+    std::size_t line = 0;    ///< from 1; 0: not known
+    std::size_t column = 0;  ///< from 1, in characters
+    std::string key;         ///< dotted: "rope[0].mass"; may be empty
+
+    /// "swing.toml:12:5: rope[0].mass"
+    [[nodiscard]] std::string text() const;
+};
+
+/// One thing that is wrong, as fields until it is printed.
+struct Problem {
+    Place place;         ///< may be empty
+    std::string what;    ///< with the value: "0 is not > 0"
+    std::string remedy;  ///< "give a number > 0"; may be empty
+
+    /// "swing.toml:12:5: rope[0].mass: 0 is not > 0; give a number > 0"
+    [[nodiscard]] std::string text() const;
+};
+
+/// Bad input or a bad environment. Its problems say what failed, the value, the library's own reason and one
+/// hint, and what() has one of them per line; `code` is the exit status of the program. A programmer's error
+/// is an assert instead, and a physical outcome is a returned status.
 class Error : public std::runtime_error {
   public:
-    Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+    Error(ExitCode code, const std::string& message) : Error(code, Problem{{}, message, {}}) {}
+    Error(ExitCode code, Problem problem) : Error(code, std::vector{std::move(problem)}) {}
+    Error(ExitCode code, std::vector<Problem> problems);
 
     [[nodiscard]] ExitCode code() const noexcept { return code_; }
+    /// At least one.
+    [[nodiscard]] const std::vector<Problem>& problems() const noexcept { return *problems_; }
 
   private:
     ExitCode code_;
+    std::shared_ptr<const std::vector<Problem>> problems_;  // shared, because copies of errors must not throw
 };
 
 /// Base of classes that are neither copied nor moved.

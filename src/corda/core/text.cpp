@@ -43,6 +43,26 @@ bool is_prefix(std::string_view word, std::string_view candidate) {
 
 }  // namespace
 
+std::string Place::text() const {
+    std::string text = source;
+    if (line > 0) text += fmt::format(":{}:{}", line, column);
+    return text + (text.empty() || key.empty() ? "" : ": ") + key;
+}
+
+std::string Problem::text() const {
+    const std::string begin = place.text();
+    return begin + (begin.empty() ? "" : ": ") + what + (remedy.empty() ? "" : "; ") + remedy;
+}
+
+Error::Error(ExitCode code, std::vector<Problem> problems)
+    : std::runtime_error([&] {
+          std::string text;
+          for (const Problem& problem : problems) text += (text.empty() ? "" : "\n") + problem.text();
+          return text;
+      }()),
+      code_(code),
+      problems_(std::make_shared<const std::vector<Problem>>(std::move(problems))) {}
+
 Character first_character(std::string_view text) {
     const auto byte = [text](std::size_t i) { return static_cast<std::uint32_t>(text[i]) & 0xffU; };
     const std::uint32_t lead = byte(0);
@@ -61,6 +81,16 @@ Character first_character(std::string_view text) {
 
 std::string utf8(std::string_view bytes) {
     return escaped(bytes, false);
+}
+
+std::string printable_lines(std::string_view text) {
+    std::string lines;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        lines += (begin > 0 ? "\n" : "") + printable(text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return lines;
 }
 
 std::string printable(std::string_view bytes) {

@@ -35,6 +35,8 @@ template <class... Values>
 /// title and XML can show. Line separators and what turns the direction of text (U+202E) count as such.
 /// Printable text stays as it is.
 [[nodiscard]] std::string printable(std::string_view bytes);
+/// The same for each line of a text.
+[[nodiscard]] std::string printable_lines(std::string_view text);
 
 /// The character at the start of a text.
 struct Character {

@@ -264,14 +264,13 @@ std::string method_caption(const Plan& plan, const std::optional<double>& error_
 }
 
 Error film::explained(const Refusal& refusal, const Scene& scene) {
-    std::string place = scene.source.empty() ? "" : scene.source + ": ";
-    if (refusal.reason() == Refusal::Reason::kUnknownTensions && !scene.tensions_place.empty()) {
-        place = scene.tensions_place + ": ";
-    } else if (refusal.reason() == Refusal::Reason::kUnknownTensions) {
-        if (scene.style.color_by == ColorBy::kTension) place += "style.color_by: ";
-        if (scene.style.arrows == Arrows::kTension) place += "style.arrows: ";
+    Place place{.source = scene.source, .key = {}};
+    if (refusal.reason() == Refusal::Reason::kUnknownTensions) {
+        if (scene.style.color_by == ColorBy::kTension) place.key = "style.color_by";
+        if (scene.style.arrows == Arrows::kTension) place.key = "style.arrows";
+        if (!scene.tensions_place.key.empty()) place = scene.tensions_place;
     }
-    return {refusal.code(), fmt::format("{}{}; {}", place, refusal.what(), remedy(refusal.reason()))};
+    return {refusal.code(), Problem{place, refusal.what(), std::string(remedy(refusal.reason()))}};
 }
 
 PngInfo picture_info(const std::string& scene_name, const std::string& times, const std::string& frames,

@@ -16,8 +16,8 @@ std::vector<T> read_all(const Value& value, bool is_list, std::int64_t particles
     const auto count = static_cast<std::size_t>(particles);
     if (!is_list) return std::vector<T>(count, value.as<T>());
     if (value.size() != count) {
-        value.add_problem(
-            fmt::format("{} values for {} particles; give one per particle", value.size(), particles));
+        value.add_problem(fmt::format("{} values for {} particles", value.size(), particles),
+                          "give one per particle");
         return std::vector<T>(count);
     }
     std::vector<T> values;
@@ -48,12 +48,12 @@ BodyStyleDef read_body_style(const TableReader& body, bool takes_link_colors) {
         def.link_colors = color->as<std::vector<Color>>();
         for (std::size_t i = 0; i < def.link_colors.size(); ++i) {
             if (def.link_colors[i].a != def.link_colors.front().a)
-                color->at(i).add_problem(
-                    "another alpha than that of the first link; give all links the same");
+                color->at(i).add_problem("another alpha than that of the first link",
+                                         "give all links the same");
         }
         if (!takes_link_colors)
-            color->add_problem(
-                "a list of colours is for links in turn; set style.color_by = \"link\", or give one colour");
+            color->add_problem("a list of colours is for links in turn",
+                               "set style.color_by = \"link\", or give one colour");
     } else if (color) {
         def.color = color->as<Color>();
     }
@@ -69,9 +69,10 @@ void read_points(const TableReader& body, Vec2& origin_m, std::vector<Vec2>& poi
             points_m.push_back(points.at(i).as<Vec2>());
             const Vec2 at = origin_m + points_m.back();
             if (std::max(std::abs(at.x), std::abs(at.y)) > Limits::kCoordinateMetres)
-                points.at(i).add_problem(fmt::format(
-                    "with the origin it is at [{}, {}], beyond the limit of {:g} m; move it closer", at.x,
-                    at.y, Limits::kCoordinateMetres));
+                points.at(i).add_problem(
+                    fmt::format("with the origin it is at [{}, {}], beyond the limit of {:g} m", at.x, at.y,
+                                Limits::kCoordinateMetres),
+                    "move it closer");
         }
         return;
     }
@@ -81,15 +82,15 @@ void read_points(const TableReader& body, Vec2& origin_m, std::vector<Vec2>& poi
 
 void refuse_origin(const TableReader& body) {
     if (const auto origin = body.find("origin"); origin && !body.is_given("points"))
-        origin->add_problem("only points are relative to an origin; give \"from\" in the shape's table");
+        origin->add_problem("only points are relative to an origin", "give \"from\" in the shape's table");
 }
 
 std::optional<std::uint32_t> read_index(const Value& entry, std::int64_t count, std::string_view owner) {
     const auto written = entry.as<std::int64_t>();
     if (written >= -count && written < count)
         return static_cast<std::uint32_t>(written < 0 ? written + count : written);
-    entry.add_problem(fmt::format("{} is out of range; {} 0 .. {}, or -1 .. -{} from the end", written, owner,
-                                  count - 1, count));
+    entry.add_problem(fmt::format("{} is out of range", written),
+                      fmt::format("{} 0 .. {}, or -1 .. -{} from the end", owner, count - 1, count));
     return std::nullopt;
 }
 
@@ -102,7 +103,7 @@ std::vector<std::uint32_t> read_pinned(
         const Value entry = list.at(i);
         const auto index = index_of(entry);
         if (!index) continue;
-        if (seen[*index]) entry.add_problem(fmt::format("particle {} is given twice; remove one", *index));
+        if (seen[*index]) entry.add_problem(fmt::format("particle {} is given twice", *index), "remove one");
         seen[*index] = true;
         pinned.push_back(*index);
     }

@@ -15,12 +15,12 @@
 namespace corda::scene {
 namespace {
 
-/// For a key that another table has: `; it is a key of video`.
+/// For a key that another table has: "it is a key of video".
 std::string other_home(std::string_view name) {
     const auto& keys = all_keys();
     const auto key = std::ranges::find(keys, name, &Key::name);
     if (key == keys.end()) return "";
-    return fmt::format("; it is a key of {}", key->section.empty() ? "the top level" : key->section);
+    return fmt::format("it is a key of {}", key->section.empty() ? "the top level" : key->section);
 }
 
 /// Checks a value of one key.
@@ -53,8 +53,8 @@ class ValueChecker {
 
     bool fail_for_one(const toml::node& node, const std::string& path) const {
         const std::string& word = node.as_string()->get();
-        problems_->add(node.source(), path,
-                       fmt::format("\"{0}\" is a string, not a list; write [\"{0}\"]", word));
+        problems_->add(node.source(), path, fmt::format("\"{}\" is a string, not a list", word),
+                       fmt::format("write [\"{}\"]", word));
         return false;
     }
 
@@ -133,8 +133,8 @@ class ValueChecker {
         if (node.is_number()) return fail(node, path, fmt::format("{} is not allowed", text));
         const auto meant = nearest(text, words);
         if (!meant) return fail(node, path, fmt::format("\"{}\" is unknown", excerpt(text)));
-        problems_->add(node.source(), path,
-                       fmt::format("\"{}\" is unknown; did you mean \"{}\"?", excerpt(text), *meant));
+        problems_->add(node.source(), path, fmt::format("\"{}\" is unknown", excerpt(text)),
+                       fmt::format("did you mean \"{}\"?", *meant));
         return false;
     }
 
@@ -175,8 +175,8 @@ class ValueChecker {
         return fail(node, path, fmt::format("{}, not {}", described(node), expected));
     }
 
-    bool fail(const toml::node& node, const std::string& path, std::string_view problem) const {
-        problems_->add(node.source(), path, fmt::format("{}; {}", problem, remedy(*key_)));
+    bool fail(const toml::node& node, const std::string& path, std::string what) const {
+        problems_->add(node.source(), path, std::move(what), remedy(*key_));
         return false;
     }
 
@@ -199,7 +199,7 @@ class TableChecker {
             if (node != nullptr && !check_value(key, *node, dotted(section, key.name), key_path)) {
                 table.erase(key.name);
             } else if (node == nullptr && key.binding.initial.required && problems_->is_sound(key_path)) {
-                problems_->add(table.source(), key_path, fmt::format("missing; {}", remedy(key)));
+                problems_->add(table.source(), key_path, "missing", remedy(key));
             }
         }
     }
@@ -211,16 +211,17 @@ class TableChecker {
             if (find_key(section, key.str()) != nullptr) continue;
             const std::string name = excerpt(key.str());
             if (const auto instead = replacement_of(dotted(section, key.str())); !instead.empty()) {
-                problems_->add(key.source(), dotted(path, name), fmt::format("was removed; {}", instead));
+                problems_->add(key.source(), dotted(path, name), "was removed", std::string(instead));
                 continue;
             }
             std::vector<std::string_view> known;
             for (const Key& one : keys_of(section)) known.push_back(one.name);
             const auto meant = nearest(key.str(), known);
             if (meant) problems_->add_misspelt(dotted(path, *meant));
-            std::string hint = meant ? fmt::format("; did you mean \"{}\"?", *meant) : other_home(key.str());
-            if (hint.empty()) hint = fmt::format("; valid keys: {}", fmt::join(known, ", "));
-            problems_->add(key.source(), dotted(path, name), fmt::format("unknown key \"{}\"{}", name, hint));
+            std::string hint = meant ? fmt::format("did you mean \"{}\"?", *meant) : other_home(key.str());
+            if (hint.empty()) hint = fmt::format("valid keys: {}", fmt::join(known, ", "));
+            problems_->add(key.source(), dotted(path, name), fmt::format("unknown key \"{}\"", name),
+                           std::move(hint));
         }
     }
 
@@ -236,9 +237,10 @@ class TableChecker {
         for (const Key& key : keys_of(method_key.section)) {
             const toml::node* const node = solver.get(key.name);
             if (node == nullptr || key.methods.empty() || has(key.methods, method)) continue;
-            problems_->add(node->source(), dotted(path, key.name),
-                           fmt::format("method \"{}\" does not use it, only {}; remove it{}", method,
-                                       fmt::join(key.methods, ", "), key.instead));
+            problems_->add(
+                node->source(), dotted(path, key.name),
+                fmt::format("method \"{}\" does not use it, only {}", method, fmt::join(key.methods, ", ")),
+                fmt::format("remove it{}", key.instead));
             solver.erase(key.name);
         }
     }
@@ -257,7 +259,7 @@ class TableChecker {
         toml::array* const list = node.as_array();
         if (list == nullptr) return fail(key, node, path, "a list");
         if (list->empty()) {
-            problems_->add(node.source(), path, fmt::format("the list is empty; {}", remedy(key)));
+            problems_->add(node.source(), path, "the list is empty", remedy(key));
             return false;
         }
         for (std::size_t i = 0; i < list->size(); ++i) {
@@ -274,8 +276,8 @@ class TableChecker {
 
     bool fail(const Key& key, const toml::node& node, const std::string& path,
               std::string_view expected) const {
-        problems_->add(node.source(), path,
-                       fmt::format("{}, not {}; {}", described(node), expected, remedy(key)));
+        problems_->add(node.source(), path, fmt::format("{}, not {}", described(node), expected),
+                       remedy(key));
         return false;
     }
 
@@ -287,8 +289,8 @@ void check_schema(const toml::table& document, Problems& problems) {
     const toml::value<std::int64_t>* const schema = document["schema"].as_integer();
     if (schema == nullptr || std::to_string(schema->get()) == find_key("", "schema")->type.choices.front())
         return;
-    problems.add(schema->source(), "schema",
-                 fmt::format("{} is not a known version; this program reads schema = 1", schema->get()));
+    problems.add(schema->source(), "schema", fmt::format("{} is not a known version", schema->get()),
+                 "this program reads schema = 1");
     problems.throw_if_any();
 }
 
@@ -299,7 +301,7 @@ void check_document(toml::table& document, Problems& problems) {
     TableChecker(problems).check(document, "", "");
     const bool has_bodies = document.contains("rope") || document.contains("net");
     if (!has_bodies && problems.is_sound("rope") && problems.is_sound("net"))
-        problems.add(document.source(), "rope", "missing; give one or more [[rope]] or [[net]]");
+        problems.add(document.source(), "rope", "missing", "give one or more [[rope]] or [[net]]");
 }
 
 void check_value(const Key& key, const std::string& toml, const std::string& path, Problems& problems) {

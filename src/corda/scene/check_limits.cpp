@@ -12,17 +12,18 @@
 namespace corda::scene {
 namespace {
 
-struct Place {
+struct KeyOf {
     const TableReader* table;
     std::string_view key;
 };
 
 /// Adds a problem at the first of the keys that the file gives, otherwise at the first body.
-void fail_at(const Sections& sections, std::initializer_list<Place> places, std::string_view problem) {
-    for (const Place& place : places) {
-        if (const auto value = place.table->find(place.key)) return value->add_problem(problem);
+void fail_at(const Sections& sections, std::initializer_list<KeyOf> keys, const std::string& what,
+             const std::string& remedy) {
+    for (const auto& [table, key] : keys) {
+        if (const auto value = table->find(key)) return value->add_problem(what, remedy);
     }
-    (sections.ropes.empty() ? sections.nets : sections.ropes).front().add_problem(problem);
+    (sections.ropes.empty() ? sections.nets : sections.ropes).front().add_problem(what, remedy);
 }
 
 bool check_frames(const Sections& sections, const Scene& scene) {
@@ -31,19 +32,18 @@ bool check_frames(const Sections& sections, const Scene& scene) {
         return false;
     const double duration_s = scene.world.duration_s;
     const double frames = duration_s * scene.video.scene_rate().per_second();
-    const std::initializer_list<Place> places{
+    const std::initializer_list<KeyOf> keys{
         {&sections.world, "duration"}, {&sections.video, "fps"}, {&sections.video, "speed"}};
-    std::string problem;
     if (frames > static_cast<double>(Limits::kFrames)) {
-        problem = fmt::format(
-            "{:g} s at {} frames per second are {:g} frames, over the limit of {}; give a shorter duration "
-            "or fewer frames per second",
-            duration_s, scene.video.scene_rate().rational().text(), frames, Limits::kFrames);
-    } else if (scene.video.scene_rate().frame_count(duration_s) < 1) {
-        problem = fmt::format("{:g} s hold no frame; give a longer duration", duration_s);
+        fail_at(sections, keys,
+                fmt::format("{:g} s at {} frames per second are {:g} frames, over the limit of {}",
+                            duration_s, scene.video.scene_rate().rational().text(), frames, Limits::kFrames),
+                "give a shorter duration or fewer frames per second");
+        return false;
     }
-    if (!problem.empty()) fail_at(sections, places, problem);
-    return problem.empty();
+    if (scene.video.scene_rate().frame_count(duration_s) >= 1) return true;
+    fail_at(sections, keys, fmt::format("{:g} s hold no frame", duration_s), "give a longer duration");
+    return false;
 }
 
 /// The method of a solver; `auto` is estimated as `exact`.
@@ -66,10 +66,10 @@ bool check_steps(const Sections& sections, const SolverGroup& group, const Scene
     if (!group.table.is_sound("method") || !group.table.is_sound("step")) return false;
     const double steps = step_count(group.def, scene);
     if (steps <= static_cast<double>(Limits::kSteps)) return true;
-    fail_at(
-        sections, {{&group.table, "step"}, {&sections.world, "duration"}},
-        fmt::format("{:g} s are {:g} steps, over the limit of {}; give a longer step or a shorter duration",
-                    scene.world.duration_s, steps, Limits::kSteps));
+    fail_at(sections, {{&group.table, "step"}, {&sections.world, "duration"}},
+            fmt::format("{:g} s are {:g} steps, over the limit of {}", scene.world.duration_s, steps,
+                        Limits::kSteps),
+            "give a longer step or a shorter duration");
     return false;
 }
 
@@ -81,16 +81,15 @@ bool check_bar_updates(const Sections& sections, const SolverGroup& group, const
     const bool is_first = all_updates == 0.0;
     all_updates += static_cast<double>(bars) * sweep_count(group.def) * steps;
     if (all_updates <= Limits::kBarUpdates) return true;
-    fail_at(
-        sections,
-        {{&group.table, "sweeps"},
-         {&group.table, "step"},
-         {&group.table, "reach"},
-         {&sections.world, "duration"}},
-        fmt::format("{} bars, {} sweeps and {:g} steps{} are {:g} bar updates, over the limit of {:g}; give "
-                    "fewer of one of them",
-                    bars, sweep_count(group.def), steps, is_first ? "" : ", with those of other methods,",
-                    all_updates, Limits::kBarUpdates));
+    fail_at(sections,
+            {{&group.table, "sweeps"},
+             {&group.table, "step"},
+             {&group.table, "reach"},
+             {&sections.world, "duration"}},
+            fmt::format("{} bars, {} sweeps and {:g} steps{} are {:g} bar updates, over the limit of {:g}",
+                        bars, sweep_count(group.def), steps, is_first ? "" : ", with those of other methods,",
+                        all_updates, Limits::kBarUpdates),
+            "give fewer of one of them");
     return false;
 }
 
@@ -123,9 +122,9 @@ bool add_size(const TableReader& body, const BodySize& size, double trail_points
     all.trail_points += trail_points;
     const auto too_many = [&](std::string_view what, auto count, auto limit, std::string_view fewer) {
         if (count <= limit) return false;
-        body.add_problem(
-            fmt::format("the ropes and nets up to this one have {} {}, over the limit of {}; give {}", count,
-                        what, limit, fewer));
+        body.add_problem(fmt::format("the ropes and nets up to this one have {} {}, over the limit of {}",
+                                     count, what, limit),
+                         fmt::format("give {}", fewer));
         return true;
     };
     return !too_many("particles", all.particles, Limits::kParticles, "fewer") &&
@@ -138,10 +137,10 @@ bool add_size(const TableReader& body, const BodySize& size, double trail_points
 bool check_factored(const TableReader& net, const BodySize& size, const SolverDef& solver) {
     if (std::holds_alternative<RelaxationDef>(solver) || size.particles <= Limits::kFactoredParticles)
         return true;
-    net.add_problem(fmt::format(
-        "{} particles are over the limit of {} for a net that relaxation does not move; give fewer, or "
-        "method relaxation",
-        size.particles, Limits::kFactoredParticles));
+    net.add_problem(
+        fmt::format("{} particles are over the limit of {} for a net that relaxation does not move",
+                    size.particles, Limits::kFactoredParticles),
+        "give fewer, or method relaxation");
     return false;
 }
 

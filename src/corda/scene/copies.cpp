@@ -66,8 +66,9 @@ void check_sum(const std::vector<TableReader>& ropes) {
         if (sum <= Limits::kParticles) continue;
         const std::string with = before == 0 ? "" : fmt::format(", with {} of ropes before it,", before);
         return rope.table("copies").add_problem(
-            fmt::format("{} copies of {} particles{} are over the limit of {} particles; make fewer", count,
-                        size->particles, with, Limits::kParticles));
+            fmt::format("{} copies of {} particles{} are over the limit of {} particles", count,
+                        size->particles, with, Limits::kParticles),
+            "make fewer");
     }
 }
 

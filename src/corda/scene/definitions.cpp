@@ -12,26 +12,27 @@ namespace corda::scene {
 std::vector<DefProblem> problems_of(const VideoDef& video) {
     // A speed out of its range is refused by itself.
     if (video.speed.is_rate() && !video.scene_fraction().is_rate())
-        return {
-            {"speed",
-             {},
-             fmt::format("{} frames per second at this speed are {} per second of the scene, not a "
-                         "fraction of integers within 1 .. {}; give a simpler fraction",
-                         video.fps.rational().text(), video.scene_fraction().text(), Rational::kMaxPart)}};
+        return {{"speed",
+                 {},
+                 fmt::format("{} frames per second at this speed are {} per second of the scene, not a "
+                             "fraction of integers within 1 .. {}",
+                             video.fps.rational().text(), video.scene_fraction().text(), Rational::kMaxPart),
+                 "give a simpler fraction"}};
     const std::int64_t pixels = std::int64_t{video.width_px} * video.height_px;
     if (pixels <= kMaxPicturePx) return {};
     return {{"size",
              {},
-             fmt::format("{} x {} are {} pixels, over the limit of {}; give a smaller size", video.width_px,
-                         video.height_px, pixels, kMaxPicturePx)}};
+             fmt::format("{} x {} are {} pixels, over the limit of {}", video.width_px, video.height_px,
+                         pixels, kMaxPicturePx),
+             "give a smaller size"}};
 }
 
 std::vector<DefProblem> problems_of(const OverlayTextDef& text) {
     if (!text.to_s || *text.to_s > text.from_s) return {};
-    return {
-        {"to",
-         {},
-         fmt::format("{} s is not after {} s, when it appears; give a later time", *text.to_s, text.from_s)}};
+    return {{"to",
+             {},
+             fmt::format("{} s is not after {} s, when it appears", *text.to_s, text.from_s),
+             "give a later time"}};
 }
 
 std::vector<DefProblem> problems_of(const OverlayDef& overlay, const std::vector<RopeDef>& ropes) {
@@ -41,18 +42,21 @@ std::vector<DefProblem> problems_of(const OverlayDef& overlay, const std::vector
     const std::vector<LivePlot>& plots = overlay.plots;
     std::vector<DefProblem> problems;
     for (std::size_t i = 0; i < plots.size(); ++i) {
-        const auto add = [&](const char* problem) { problems.push_back({"plots", i, problem}); };
+        const auto add = [&](const char* what, const char* remedy) {
+            problems.push_back({"plots", i, what, remedy});
+        };
         const auto now = plots.begin() + static_cast<std::ptrdiff_t>(i);
-        if (std::find(plots.begin(), now, *now) != now) add("the same plot twice; remove one");
+        if (std::find(plots.begin(), now, *now) != now) add("the same plot twice", "remove one");
         if ((*now == LivePlot::kAngle || *now == LivePlot::kPhase) && !has_angle)
-            add("no rope has one pinned particle, to measure the angle about, and a free end; pin one "
-                "particle of an open rope, or remove this plot");
+            add("no rope has one pinned particle, to measure the angle about, and a free end",
+                "pin one particle of an open rope, or remove this plot");
         if (*now == LivePlot::kDivergence && ropes.size() < 2)
-            add("it is the distance of the tips of ropes 0 and 1, and there are not two ropes; give "
-                "another [[rope]] or rope.copies, or remove this plot");
+            add("it is the distance of the tips of ropes 0 and 1, and there are not two ropes",
+                "give another [[rope]] or rope.copies, or remove this plot");
         else if (*now == LivePlot::kDivergence && !(moves(ropes[0]) && moves(ropes[1])))
             add("it is the distance of the tips of ropes 0 and 1, and all particles of one of them are "
-                "pinned; pin fewer, give ropes that move first, or remove this plot");
+                "pinned",
+                "pin fewer, give ropes that move first, or remove this plot");
     }
     return problems;
 }
@@ -66,34 +70,35 @@ std::vector<DefProblem> problems_of(const StyleDef& style, const std::vector<Rop
     std::vector<DefProblem> problems;
     if (!style.trail_of.empty() && style.trail_s == 0.0)
         problems.push_back(
-            {"trail_of", {}, "no trail without a length; give style.trail_s, or remove trail_of"});
+            {"trail_of", {}, "no trail without a length", "give style.trail_s, or remove trail_of"});
     for (std::size_t i = 0; i < style.trail_of.size(); ++i) {
         const std::int64_t particle = style.trail_of[i];
         if (particle < -count || particle >= count)
-            problems.push_back(
-                {"trail_of", i,
-                 fmt::format("{} is out of range; the particles of the longest rope or net are "
-                             "0 .. {}, or -1 .. -{} from its end",
-                             particle, count - 1, count)});
+            problems.push_back({"trail_of", i, fmt::format("{} is out of range", particle),
+                                fmt::format("the particles of the longest rope or net are 0 .. {}, or -1 .. "
+                                            "-{} from its end",
+                                            count - 1, count)});
     }
     return problems;
 }
 
 std::vector<DefProblem> problems_of(const CameraDef& camera, std::size_t bodies) {
     if (camera.follow && !camera.path.empty())
-        return {
-            {"path", {}, "the camera follows something, or has a path; remove camera.follow or camera.path"}};
+        return {{"path",
+                 {},
+                 "the camera follows something, or has a path",
+                 "remove camera.follow or camera.path"}};
     if (camera.follow && *camera.follow >= static_cast<int>(bodies))
-        return {
-            {"follow",
-             {},
-             fmt::format("{} is out of range; the ropes and nets are 0 .. {}", *camera.follow, bodies - 1)}};
+        return {{"follow",
+                 {},
+                 fmt::format("{} is out of range", *camera.follow),
+                 fmt::format("the ropes and nets are 0 .. {}", bodies - 1)}};
     for (std::size_t i = 1; i < camera.path.size(); ++i) {
         if (camera.path[i].time_s <= camera.path[i - 1].time_s)
             return {{"path",
                      {},
-                     fmt::format("{} s after {} s; give times that increase", camera.path[i].time_s,
-                                 camera.path[i - 1].time_s)}};
+                     fmt::format("{} s after {} s", camera.path[i].time_s, camera.path[i - 1].time_s),
+                     "give times that increase"}};
     }
     return {};
 }
@@ -102,13 +107,12 @@ std::vector<DefProblem> problems_of(const GoldenDef& golden) {
     std::vector<DefProblem> problems;
     for (std::size_t i = 1; i < golden.at_s.size(); ++i) {
         if (golden.at_s[i] > golden.at_s[i - 1]) continue;
-        problems.push_back(
-            {"at", i,
-             fmt::format("{} s after {} s; give times that increase", golden.at_s[i], golden.at_s[i - 1])});
+        problems.push_back({"at", i, fmt::format("{} s after {} s", golden.at_s[i], golden.at_s[i - 1]),
+                            "give times that increase"});
     }
     if (!is_picture_size(golden.width_px, golden.height_px))
         problems.push_back(
-            {"size", {}, fmt::format("over the limit of {} pixels; give a smaller size", kMaxPicturePx)});
+            {"size", {}, fmt::format("over the limit of {} pixels", kMaxPicturePx), "give a smaller size"});
     return problems;
 }
 

@@ -34,6 +34,10 @@ std::size_t skip_string(std::string_view text, std::size_t begin) {
     return text.size();
 }
 
+[[noreturn]] void fail_at(const Place& place, const std::string& what, const std::string& remedy) {
+    throw Error(ExitCode::kInvalidScene, Problem{place, what, remedy});
+}
+
 /// Text for the parser that can be cancelled at every block. The parser turns any exception into an error of
 /// its own, so a cancellation ends the text, and check() throws it.
 class CancellableBuffer : public std::streambuf {
@@ -111,9 +115,8 @@ toml::table parse_document(std::string_view text, const std::string& source_name
             1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(deep), '\n');
         const std::size_t line_end = text.substr(0, deep).rfind('\n');
         const std::size_t column = line_end == std::string_view::npos ? deep + 1 : deep - line_end;
-        throw_error(ExitCode::kInvalidScene,
-                    "{}:{}:{}: a key of more than {} parts; give a key of the scene format", source_name,
-                    line, column, kKeyParts);
+        fail_at({source_name, static_cast<std::size_t>(line), column, ""},
+                fmt::format("a key of more than {} parts", kKeyParts), "give a key of the scene format");
     }
     CancellableBuffer buffer(text);
     std::istream stream(&buffer);
@@ -124,8 +127,8 @@ toml::table parse_document(std::string_view text, const std::string& source_name
     } catch (const toml::parse_error& error) {
         buffer.check();
         const auto& begin = error.source().begin;
-        throw_error(ExitCode::kInvalidScene, "{}:{}:{}: {}; see https://toml.io for the syntax", source_name,
-                    begin.line, begin.column, error.description());
+        fail_at({source_name, begin.line, begin.column, ""}, std::string(error.description()),
+                "see https://toml.io for the syntax");
     }
 }
 

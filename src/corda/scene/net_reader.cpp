@@ -27,7 +27,7 @@ std::int64_t grid_bars(const GridDef& grid) {
 std::optional<GridDef> read_grid(const TableReader& table) {
     GridDef grid;
     read_fields(table, grid);
-    if (grid_particles(grid) == 1) table.add_problem("1 particle is no net; give more columns or rows");
+    if (grid_particles(grid) == 1) table.add_problem("1 particle is no net", "give more columns or rows");
     return grid_particles(grid) < 2 ? std::nullopt : std::optional(grid);
 }
 
@@ -37,9 +37,9 @@ void read_grid_points(const TableReader& table, const GridDef& grid, NetDef& def
     shape = grid;
     const Vec2 last = def.origin_m + def.points_m.back();
     if (std::max(std::abs(last.x), std::abs(last.y)) > Limits::kCoordinateMetres) {
-        table.add_problem(
-            fmt::format("the last particle is at [{}, {}], beyond the limit of {:g} m; make the grid smaller",
-                        last.x, last.y, Limits::kCoordinateMetres));
+        table.add_problem(fmt::format("the last particle is at [{}, {}], beyond the limit of {:g} m", last.x,
+                                      last.y, Limits::kCoordinateMetres),
+                          "make the grid smaller");
     }
 }
 
@@ -53,7 +53,7 @@ std::optional<std::uint32_t> read_grid_pin(const Value& entry, const GridDef& gr
 
 std::optional<std::uint32_t> read_point_pin(const Value& entry, std::int64_t particles) {
     if (!entry.is_list()) return read_index(entry, particles, "the net has particles");
-    entry.add_problem("only a grid has columns and rows; give the index of a particle");
+    entry.add_problem("only a grid has columns and rows", "give the index of a particle");
     return std::nullopt;
 }
 
@@ -81,10 +81,11 @@ std::optional<NetBar> read_bar(const Value& entry, const NetDef& def) {
     if (!a || !b) return std::nullopt;
     const Vec2 along = def.points_m[*b] - def.points_m[*a];
     if (*a == *b) {
-        entry.add_problem(fmt::format("a bar from particle {} to itself; join two different ones", *a));
+        entry.add_problem(fmt::format("a bar from particle {} to itself", *a), "join two different ones");
     } else if (sim::length(along.x, along.y) < kMinBarMetres) {
-        entry.add_problem(fmt::format(
-            "particles {} and {} coincide, and a bar without length has no direction; move one", *a, *b));
+        entry.add_problem(
+            fmt::format("particles {} and {} coincide, and a bar without length has no direction", *a, *b),
+            "move one");
     }
     return NetBar{*a, *b};
 }
@@ -105,8 +106,9 @@ void refuse_double_bars(const Value& list, const std::vector<NetBar>& bars) {
     const auto same = std::ranges::adjacent_find(pairs, {}, &Pair::key);
     if (same == pairs.end()) return;
     list.at((same + 1)->place)
-        .add_problem(fmt::format("particles {} and {} are joined already, by bars[{}]; remove one", same->low,
-                                 same->high, same->place));
+        .add_problem(fmt::format("particles {} and {} are joined already, by bars[{}]", same->low, same->high,
+                                 same->place),
+                     "remove one");
 }
 
 void read_bars(const Value& list, NetDef& def) {
@@ -122,14 +124,14 @@ void read_bars(const Value& list, NetDef& def) {
 std::optional<BodySize> read_net_size(const TableReader& net) {
     const bool has_grid = net.is_given("grid");
     if (has_grid == net.is_given("points")) {
-        net.add_problem(has_grid ? "the net has 2 shapes (grid, points); keep one of them"
-                                 : "the net has no shape; give grid, or points and bars");
+        net.add_problem(has_grid ? "the net has 2 shapes (grid, points)" : "the net has no shape",
+                        has_grid ? "keep one of them" : "give grid, or points and bars");
         return std::nullopt;
     }
     const auto points = net.find("points");
     const auto bars = net.find("bars");
     if (has_grid && bars)
-        bars->add_problem("a grid has bars of its own; remove them, or give points in place of the grid");
+        bars->add_problem("a grid has bars of its own", "remove them, or give points in place of the grid");
     if (!has_grid && !bars) net.add_missing("bars");
     if (points && bars)
         return BodySize{static_cast<std::int64_t>(points->size()), static_cast<std::int64_t>(bars->size())};
@@ -141,8 +143,8 @@ NetDef read_net(const TableReader& net, const std::optional<BodySize>& size, Sha
     NetDef def;
     read_fields(net, def);
     if (def.material.is_string && def.material.compliance_1_n == 0.0 && net.is_sound("compliance")) {
-        net.find("string")->add_problem(
-            "a net can only hang slack if it stretches; give a compliance, or remove string");
+        net.find("string")->add_problem("a net can only hang slack if it stretches",
+                                        "give a compliance, or remove string");
     }
     if (!size) return def;
     def.mass_kg = read_mass(net, size->particles);

@@ -59,7 +59,8 @@ std::string Problems::file_key(std::string_view key) const {
     return fmt::format("{}{}{}", kRope, file_index_[index], std::string_view(rest, key.data() + key.size()));
 }
 
-void Problems::add(const toml::source_region& region, std::string_view path, std::string_view problem) {
+void Problems::add(const toml::source_region& region, std::string_view path, std::string what,
+                   std::string remedy) {
     const std::string key = file_key(path);
     if (problems_.size() == kMaxKept) {
         ++not_kept_;
@@ -71,31 +72,30 @@ void Problems::add(const toml::source_region& region, std::string_view path, std
         unsound_.emplace(key.substr(0, end));
     }
     const toml::source_position begin = begin_of(region);
-    problems_.push_back({is_setting(region), begin.line, begin.column,
-                         fmt::format("{}: {}", place_of(region, path), problem)});
+    problems_.push_back({{is_setting(region), begin.line, begin.column},
+                         {place_of(region, path), std::move(what), std::move(remedy)}});
 }
 
-std::string Problems::place_of(const toml::source_region& region, std::string_view path) const {
-    std::string place = is_setting(region) ? *region.path : source_name_;
+Place Problems::place_of(const toml::source_region& region, std::string_view path) const {
+    if (is_setting(region)) return {.source = *region.path, .key = file_key(path)};
+    if (!has_places_) return {.source = source_name_, .key = file_key(path)};
     const toml::source_position begin = begin_of(region);
-    if (!is_setting(region) && has_places_) place += fmt::format(":{}:{}", begin.line, begin.column);
-    return place.empty() ? file_key(path) : fmt::format("{}: {}", place, file_key(path));
+    return {source_name_, begin.line, begin.column, file_key(path)};
 }
 
-void Problems::add(const std::string& message) {
-    problems_.push_back({true, 0, 0, message});
+void Problems::add_to_setting(Problem problem) {
+    problems_.push_back({{true, 0, 0}, std::move(problem)});
 }
 
 void Problems::throw_if_any() const {
     if (problems_.empty()) return;
-    std::vector<Problem> sorted = problems_;
-    std::ranges::stable_sort(sorted, {}, &Problem::place);
-    std::string text;
-    for (std::size_t i = 0; i < std::min(sorted.size(), kMaxShown); ++i)
-        text += (i == 0 ? "" : "\n") + sorted[i].message;
+    std::vector<Placed> sorted = problems_;
+    std::ranges::stable_sort(sorted, {}, &Placed::order);
+    std::vector<Problem> shown;
+    for (std::size_t i = 0; i < std::min(sorted.size(), kMaxShown); ++i) shown.push_back(sorted[i].problem);
     const std::size_t count = sorted.size() + not_kept_;
-    if (count > kMaxShown) text += fmt::format("\nand {} more", count - kMaxShown);
-    throw Error(ExitCode::kInvalidScene, text);
+    if (count > kMaxShown) shown.push_back({{}, fmt::format("and {} more", count - kMaxShown), {}});
+    throw Error(ExitCode::kInvalidScene, std::move(shown));
 }
 
 }  // namespace corda::scene

@@ -6,7 +6,11 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <utility>
 #include <vector>
+
+#include "corda/core/basics.hpp"
 
 namespace corda::scene {
 
@@ -23,21 +27,22 @@ namespace corda::scene {
 /// The problems of a scene, collected over the whole file.
 class Problems {
   public:
-    /// For definitions, which have no place in a file: messages begin with `source_name`, if there is one.
+    /// For definitions, which have no place in a file: places name `source_name`, if there is one.
     explicit Problems(std::string source_name) : source_name_(std::move(source_name)), has_places_(false) {}
     /// `document` is what `toml::parse` returned for the text named `source_name`.
     Problems(std::string source_name, const toml::table& document)
         : source_name_(std::move(source_name)), document_path_(document.source().path) {}
 
-    /// Adds "place: key: problem". The place is that of `region`: "swing.toml:12:5", or the setting that the
-    /// value came with. Only the first problem of a key counts.
-    void add(const toml::source_region& region, std::string_view key, std::string_view problem);
+    /// Adds a problem at `region`, which is in the file or in the setting that the value came with. Only the
+    /// first problem of a key counts.
+    void add(const toml::source_region& region, std::string_view key, std::string what,
+             std::string remedy = "");
 
     /// From now on, keys of rope i are those of rope `file_index[i]` of the file.
     void set_ropes(std::vector<std::size_t> file_index) { file_index_ = std::move(file_index); }
 
-    /// Adds a problem whose message is complete.
-    void add(const std::string& message);
+    /// Adds a problem of a setting that does not fit the document.
+    void add_to_setting(Problem problem);
 
     /// Marks the key that a misspelt one stands for; the misspelt one has a problem already.
     void add_misspelt(std::string_view key) { unsound_.emplace(key); }
@@ -46,8 +51,7 @@ class Problems {
     /// only repeat its problem.
     [[nodiscard]] bool is_sound(std::string_view key) const { return !unsound_.contains(file_key(key)); }
 
-    /// "place: key", as the message of a problem begins.
-    [[nodiscard]] std::string place_of(const toml::source_region& region, std::string_view key) const;
+    [[nodiscard]] Place place_of(const toml::source_region& region, std::string_view key) const;
 
     [[nodiscard]] bool empty() const { return problems_.empty(); }
 
@@ -56,13 +60,9 @@ class Problems {
     void throw_if_any() const;
 
   private:
-    struct Problem {
-        bool is_setting = false;
-        std::size_t line = 0;
-        std::size_t column = 0;
-        std::string message;
-
-        [[nodiscard]] auto place() const { return std::tuple(is_setting, line, column); }
+    struct Placed {
+        std::tuple<bool, std::size_t, std::size_t> order;  ///< whether it is of a setting, line and column
+        Problem problem;
     };
 
     [[nodiscard]] std::string file_key(std::string_view key) const;
@@ -74,7 +74,7 @@ class Problems {
     std::string source_name_;
     bool has_places_ = true;
     toml::source_path_ptr document_path_;
-    std::vector<Problem> problems_;
+    std::vector<Placed> problems_;
     std::size_t not_kept_ = 0;
     std::set<std::string, std::less<>> reported_;
     std::set<std::string, std::less<>> unsound_;

@@ -18,9 +18,11 @@ namespace {
     if (reason == EINTR)
         throw_error(ExitCode::kInterrupted, "{}: interrupted while waiting for the {}", path, what);
     const bool is_denied = reason == EACCES || reason == EPERM;
-    throw_error(ExitCode::kIo, "{}: cannot read the {} file: {}; {}", path, what,
-                std::generic_category().message(reason),
-                is_denied ? hint_for_errno(reason, FileUse::kRead) : "give the path of a TOML file");
+    throw Error(ExitCode::kIo, Problem{{.source = path, .key = {}},
+                                       fmt::format("cannot read the {} file: {}", what,
+                                                   std::generic_category().message(reason)),
+                                       is_denied ? std::string(hint_for_errno(reason, FileUse::kRead))
+                                                 : "give the path of a TOML file"});
 }
 
 /// Standard input stays open: closing it would give its number to the next file.
@@ -53,9 +55,11 @@ std::string source_name(const std::string& path) {
 
 void check_file_bytes(const std::string& source_name, std::size_t bytes) {
     if (bytes <= static_cast<std::size_t>(Limits::kFileBytes)) return;
-    throw_error(ExitCode::kInvalidScene,
-                "{}: {} bytes or more are over the limit of {} bytes; a scene has fewer particles",
-                source_name, bytes, Limits::kFileBytes);
+    throw Error(
+        ExitCode::kInvalidScene,
+        Problem{{.source = source_name, .key = {}},
+                fmt::format("{} bytes or more are over the limit of {} bytes", bytes, Limits::kFileBytes),
+                "a scene has fewer particles"});
 }
 
 }  // namespace corda::scene

@@ -93,7 +93,8 @@ void check_tensions(const Sections& sections, const SolverSection& solver, Scene
 struct DefProblem {
     std::string_view key;
     std::optional<std::size_t> entry;  ///< of the key's list
-    std::string problem;
+    std::string what;
+    std::string remedy;
 };
 
 [[nodiscard]] std::vector<DefProblem> problems_of(const VideoDef& video);

@@ -24,9 +24,9 @@ double distance_m(Vec2 a, Vec2 b) {
 bool check_last_point(const TableReader& shape, const RopeDef& def) {
     const Vec2 last = def.origin_m + def.points_m.back();
     if (std::max(std::abs(last.x), std::abs(last.y)) <= Limits::kCoordinateMetres) return true;
-    shape.add_problem(
-        fmt::format("the last particle is at [{}, {}], beyond the limit of {:g} m; make the rope shorter",
-                    last.x, last.y, Limits::kCoordinateMetres));
+    shape.add_problem(fmt::format("the last particle is at [{}, {}], beyond the limit of {:g} m", last.x,
+                                  last.y, Limits::kCoordinateMetres),
+                      "make the rope shorter");
     return false;
 }
 
@@ -36,8 +36,8 @@ bool read_line(const TableReader& table, RopeDef& def, ShapeDef& shape) {
     const auto step = table.find("step");
     if (!step) return false;
     if (distance_m({}, line.step_m) < kMinBarMetres) {
-        step->add_problem(fmt::format("[{}, {}] is no distance; give a step of at least {} m", line.step_m.x,
-                                      line.step_m.y, number_text(kMinBarMetres)));
+        step->add_problem(fmt::format("[{}, {}] is no distance", line.step_m.x, line.step_m.y),
+                          fmt::format("give a step of at least {} m", number_text(kMinBarMetres)));
         return false;
     }
     place(line, def);
@@ -51,8 +51,9 @@ bool read_hang(const TableReader& table, RopeDef& def, ShapeDef& shape) {
     const auto length = table.find("length");
     if (!length || hang.links < 1) return false;
     if (hang.length_m / hang.links < kMinBarMetres) {
-        length->add_problem(fmt::format("{} m are less than {} m per link; make the rope longer",
-                                        hang.length_m, number_text(kMinBarMetres)));
+        length->add_problem(
+            fmt::format("{} m are less than {} m per link", hang.length_m, number_text(kMinBarMetres)),
+            "make the rope longer");
         return false;
     }
     place(hang, def);
@@ -60,18 +61,21 @@ bool read_hang(const TableReader& table, RopeDef& def, ShapeDef& shape) {
     return check_last_point(table, def);
 }
 
-/// Message for a bar without length between points `first` < `last`, `stride` links apart.
-std::string short_bar_problem(std::size_t first, std::size_t last, std::size_t stride, bool closes,
-                              int reach) {
+/// Adds the problem of a bar without length between points `first` < `last`, `stride` links apart.
+void refuse_short_bar(const Value& points, std::size_t first, std::size_t last, std::size_t stride,
+                      bool closes, int reach) {
+    const Value point = points.at(last);
     const std::string coincide = fmt::format("points {} and {} coincide", first, last);
-    if (stride > 1) {
-        return fmt::format(
-            "{}, and the solver's reach = {} ties them by a bar, which has no direction; move one, or give "
-            "a reach below {}",
-            coincide, reach, stride);
-    }
-    return coincide + (closes ? "; leave this one out, because closed = true ties the last point to the first"
-                              : ", and a link without length has no direction; move one");
+    if (stride > 1)
+        point.add_problem(fmt::format("{}, and the solver's reach = {} ties them by a bar, which has no "
+                                      "direction",
+                                      coincide, reach),
+                          fmt::format("move one, or give a reach below {}", stride));
+    else if (closes)
+        point.add_problem(coincide,
+                          "leave this one out, because closed = true ties the last point to the first");
+    else
+        point.add_problem(coincide + ", and a link without length has no direction", "move one");
 }
 
 /// Returns true if no bar has the length 0; otherwise the first of them is a problem. A link that hangs slack
@@ -85,7 +89,7 @@ bool check_short_bars(const Value& points, const RopeDef& def, bool has_rest_len
             const std::size_t b = (a + k) % count;
             if (distance_m(def.points_m[a], def.points_m[b]) >= kMinBarMetres) continue;
             const auto [first, last] = std::minmax(a, b);
-            points.at(last).add_problem(short_bar_problem(first, last, k, b < a, def.reach));
+            refuse_short_bar(points, first, last, k, b < a, def.reach);
             return false;
         }
     }
@@ -97,11 +101,11 @@ bool has_one_shape(const TableReader& rope) {
     std::copy_if(kShapes.begin(), kShapes.end(), std::back_inserter(given),
                  [&](std::string_view shape) { return rope.is_given(shape); });
     if (given.empty())
-        rope.add_problem(fmt::format("the rope has no shape; give one of: {}", fmt::join(kShapes, ", ")));
+        rope.add_problem("the rope has no shape", fmt::format("give one of: {}", fmt::join(kShapes, ", ")));
     const auto here = std::ranges::count_if(given, [&](std::string_view shape) { return rope.has(shape); });
     if (here > 1)  // a misspelt key has a problem already
-        rope.add_problem(fmt::format("the rope has {} shapes ({}); keep one of them", given.size(),
-                                     fmt::join(given, ", ")));
+        rope.add_problem(fmt::format("the rope has {} shapes ({})", given.size(), fmt::join(given, ", ")),
+                         "keep one of them");
     return given.size() == 1;
 }
 
@@ -116,8 +120,9 @@ std::int64_t read_particle_count(const TableReader& rope) {
         hang.read("links", links);
         hang.read("particles", particles);
         if (hang.is_given("links") == hang.is_given("particles"))
-            hang.add_problem(links > 0 ? "links and particles are both given; keep one of them"
-                                       : "give links, the number of links, or particles");
+            hang.add_problem(links > 0 ? "links and particles are both given"
+                                       : "give links, the number of links, or particles",
+                             links > 0 ? "keep one of them" : "");
         else if (links > 0)
             particles = links + 1;
         return particles;
@@ -130,10 +135,11 @@ bool read_closed(const TableReader& rope, std::int64_t particles) {
     bool closed = false;
     rope.read("closed", closed);
     if (!closed) return false;
-    const auto fail = [&](std::string_view problem) { rope.find("closed")->add_problem(problem); };
+    const Value value = *rope.find("closed");
     if (!rope.has("points"))
-        fail("the closing link of a straight rope would lie on its others; give points, or remove it");
-    if (particles < 3) fail("2 points close to no ring; give at least 3, or remove it");
+        value.add_problem("the closing link of a straight rope would lie on its others",
+                          "give points, or remove it");
+    if (particles < 3) value.add_problem("2 points close to no ring", "give at least 3, or remove it");
     return particles >= 3;
 }
 
@@ -144,13 +150,12 @@ constexpr double kLengthSlack = 1e-9;
 void refuse_contradictions(const TableReader& rope, const RopeDef& def) {
     if (!def.material.is_string) return;
     if (def.bending_n_m2 > 0.0) {
-        rope.find("bending")->add_problem(
-            "a string hangs slack, and so has no bending stiffness; remove bending or string");
+        rope.find("bending")->add_problem("a string hangs slack, and so has no bending stiffness",
+                                          "remove bending or string");
     }
     if (def.closed && def.material.compliance_1_n == 0.0 && rope.is_sound("compliance")) {
-        rope.find("string")->add_problem(
-            "a closed rope can only hang slack if it stretches; give a compliance, or remove string or "
-            "closed");
+        rope.find("string")->add_problem("a closed rope can only hang slack if it stretches",
+                                         "give a compliance, or remove string or closed");
     }
 }
 
@@ -164,9 +169,9 @@ double read_link_length(const Value& entry, const RopeDef& def, bool is_between_
     if (is_between_pins) {
         entry.add_problem(
             fmt::format("{} m are less than the {} m between particles {} and {}, which lie between pins, "
-                        "and which a string that does not stretch cannot span; give at least that, or a "
-                        "compliance",
-                        rest_m, distance_m, k, k + 1));
+                        "and which a string that does not stretch cannot span",
+                        rest_m, distance_m, k, k + 1),
+            "give at least that, or a compliance");
     }
     return rest_m;
 }
@@ -176,13 +181,13 @@ void read_link_lengths(const TableReader& rope, RopeDef& def) {
     if (!value || !rope.is_sound("compliance") || !rope.is_sound("string")) return;
     if (def.material.compliance_1_n == 0.0 && !def.material.is_string) {
         value->add_problem(
-            "links that neither stretch nor hang slack are as long as their particles are apart at the "
-            "start; give compliance or string = true, or remove it");
+            "links that neither stretch nor hang slack are as long as their particles are apart at the start",
+            "give compliance or string = true, or remove it");
         return;
     }
     const std::size_t links = def.closed ? def.points_m.size() : def.points_m.size() - 1;
     if (value->is_list() && value->size() != links) {
-        value->add_problem(fmt::format("{} values for {} links; give one per link", value->size(), links));
+        value->add_problem(fmt::format("{} values for {} links", value->size(), links), "give one per link");
         return;
     }
     def.rest_m.reserve(links);

@@ -35,9 +35,9 @@ void check_section(const TableReader& table, const Def& def, const More&... more
         const auto value = table.find(problem.key);
         if (!value) continue;
         if (problem.entry)
-            value->at(*problem.entry).add_problem(problem.problem);
+            value->at(*problem.entry).add_problem(problem.what, problem.remedy);
         else
-            value->add_problem(problem.problem);
+            value->add_problem(problem.what, problem.remedy);
     }
 }
 

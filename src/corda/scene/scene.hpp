@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "corda/core/basics.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/system.hpp"
@@ -120,7 +121,7 @@ struct Scene {
     SolverDef solver;                         ///< of the bodies that `body_solvers` does not name
     std::vector<BodySolverDef> body_solvers;  ///< empty: `solver` moves all
     StyleDef style;
-    std::string tensions_place;  ///< where a file asks to show tensions: "a.toml:9:10: style.arrows"
+    Place tensions_place;  ///< where a file asks to show tensions; empty: nowhere
     OverlayDef overlay;
     CameraDef camera;
     VideoDef video;

@@ -86,7 +86,8 @@ class SettingWriter {
             toml::table& table = as_table();
             if (!table.contains(step.name)) {
                 if (index_follows)
-                    fail(fmt::format("the scene gives no list \"{0}\"; add {0} to it first", step.name));
+                    fail(fmt::format("the scene gives no list \"{}\"", step.name),
+                         fmt::format("add {} to it first", step.name));
                 toml::table made = toml::parse("value = {}", std::string_view(label_));
                 toml::node& node = *made.get("value");
                 table.insert_or_assign(toml::key(step.name, toml::source_region(node.source())),
@@ -111,22 +112,22 @@ class SettingWriter {
 
     toml::node* element(const KeyStep& step) {
         toml::array* list = node_->as_array();
-        if (list == nullptr) fail(fmt::format("{}, not a list; leave out the index", described(*node_)));
+        if (list == nullptr) fail(described(*node_) + ", not a list", "leave out the index");
         if (step.index >= list->size()) {
-            fail(fmt::format("index {} is out of range; the list has {}{}", step.index, list->size(),
-                             list->size() > 1 ? fmt::format("; give 0 .. {}", list->size() - 1)
-                             : list->empty()  ? ""
-                                              : "; give 0"));
+            fail(fmt::format("index {} is out of range; the list has {}", step.index, list->size()),
+                 list->size() > 1 ? fmt::format("give 0 .. {}", list->size() - 1)
+                 : list->empty()  ? ""
+                                  : "give 0");
         }
         return list->get(step.index);
     }
 
     toml::table& as_table() {
         if (node_->is_array_of_tables()) {
-            fail(fmt::format("this is a list of tables; give an index: {}[0]", path_));
+            fail("this is a list of tables", fmt::format("give an index: {}[0]", path_));
         }
         if (!node_->is_table())
-            fail(fmt::format("{}, not a table; end the key at {}", described(*node_), path_));
+            fail(described(*node_) + ", not a table", fmt::format("end the key at {}", path_));
         return *node_->as_table();
     }
 
@@ -138,11 +139,8 @@ class SettingWriter {
         }
     }
 
-    [[noreturn]] void fail(const std::string& problem) const {
-        std::string message = problem;
-        for (const std::string& place : {path_, label_})
-            if (!place.empty()) message = fmt::format("{}: {}", place, message);
-        throw Error(ExitCode::kInvalidScene, message);
+    [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
+        throw Error(ExitCode::kInvalidScene, Problem{{.source = label_, .key = path_}, what, remedy});
     }
 
     toml::node* node_;
@@ -173,10 +171,10 @@ std::optional<std::vector<KeyStep>> parse_key(std::string_view key) {
 void apply_setting(toml::table& document, const Setting& setting, Problems& problems,
                    const std::string& place) {
     const std::string label = label_of(place, setting);
-    const auto refuse = [&](std::string_view problem) {
+    const auto refuse = [&](const std::string& problem) {
         const char* const advice =
-            place.empty() ? "; give --set key=value, e.g. --set video.fps=30 or --set rope[0].mass=2" : "";
-        throw_usage("{}: {}{}", label, problem, advice);
+            place.empty() ? "give --set key=value, e.g. --set video.fps=30 or --set rope[0].mass=2" : "";
+        throw Error(ExitCode::kUsage, Problem{{.source = label, .key = {}}, problem, advice});
     };
     const std::size_t equals = setting.find('=');
     if (equals == std::string::npos) refuse("there is no '='");
@@ -188,7 +186,7 @@ void apply_setting(toml::table& document, const Setting& setting, Problems& prob
     try {
         SettingWriter(document, label).write(*steps, trimmed(std::string_view(setting).substr(equals + 1)));
     } catch (const Error& error) {
-        problems.add(error.what());
+        problems.add_to_setting(error.problems().front());
     }
 }
 

@@ -33,7 +33,7 @@ std::vector<std::uint32_t> read_members(const TableReader& table, std::string_vi
     const auto list = table.find(key);
     for (std::size_t i = 0; list && i < list->size(); ++i) {
         if (count == 0) {
-            list->add_problem(fmt::format("the scene has no {}; remove it", key));
+            list->add_problem(fmt::format("the scene has no {}", key), "remove it");
             break;
         }
         const Value entry = list->at(i);
@@ -42,8 +42,8 @@ std::vector<std::uint32_t> read_members(const TableReader& table, std::string_vi
         if (!index) continue;
         std::size_t& group = section.group_of_body[first + *index];
         if (group != 0)
-            entry.add_problem(
-                fmt::format("{} is named already, by solver.bodies[{}]; remove one", *index, group - 1));
+            entry.add_problem(fmt::format("{} is named already, by solver.bodies[{}]", *index, group - 1),
+                              "remove one");
         group = section.groups.size() - 1;
         members.push_back(*index);
     }
@@ -57,7 +57,7 @@ BodySolverDef read_body_solver(const TableReader& table, const Sections& section
         return table.is_sound(key) && (!list || list->size() == 0);
     };
     if (is_empty("ropes") && is_empty("nets"))
-        table.add_problem("names no body; give ropes or nets, the indices of [[rope]] or [[net]] tables");
+        table.add_problem("names no body", "give ropes or nets, the indices of [[rope]] or [[net]] tables");
     const std::size_t ropes = sections.ropes.size();
     const std::size_t nets = sections.nets.size();
     // A list with problems of its own may have lost some of its tables.
@@ -96,9 +96,8 @@ void check_tensions(const Sections& sections, const SolverSection& solver, Scene
         for (const SolverGroup& group : solver.groups) {
             const std::optional<MethodDef> method = method_in(group.def);
             if (!method || sim::knows_tensions(*method)) continue;
-            shown.add_problem(
-                fmt::format("method \"{}\" knows no tensions; give {}, or another solver.method",
-                            method_name(*method), others));
+            shown.add_problem(fmt::format("method \"{}\" knows no tensions", method_name(*method)),
+                              fmt::format("give {}, or another solver.method", others));
             break;
         }
     }

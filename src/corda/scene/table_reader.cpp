@@ -99,8 +99,7 @@ std::vector<TableReader> TableReader::tables(std::string_view key) const {
 
 void TableReader::add_missing(std::string_view key) const {
     if (is_sound(key))
-        problems_->add(table_->source(), path_of(key),
-                       fmt::format("missing; {}", remedy(*find_key(section_, key))));
+        problems_->add(table_->source(), path_of(key), "missing", remedy(*find_key(section_, key)));
 }
 
 std::string TableReader::path_of(std::string_view key) const {

@@ -70,9 +70,10 @@ class Value {
         }
     }
 
-    void add_problem(std::string_view problem) const { problems_->add(node_->source(), path_, problem); }
-    /// Its place and its key in messages.
-    [[nodiscard]] std::string place() const { return problems_->place_of(node_->source(), path_); }
+    void add_problem(std::string what, std::string remedy = "") const {
+        problems_->add(node_->source(), path_, std::move(what), std::move(remedy));
+    }
+    [[nodiscard]] Place place() const { return problems_->place_of(node_->source(), path_); }
 
   private:
     Problems* problems_;
@@ -112,7 +113,9 @@ class TableReader {
     }
 
     [[nodiscard]] Problems& problems() const { return *problems_; }
-    void add_problem(std::string_view problem) const { problems_->add(table_->source(), path_, problem); }
+    void add_problem(std::string what, std::string remedy) const {
+        problems_->add(table_->source(), path_, std::move(what), std::move(remedy));
+    }
     /// A problem at a key that is missing.
     void add_missing(std::string_view key) const;
 

@@ -332,7 +332,7 @@ void check_definitions(const Scene& scene) {
     }
     const auto check_all = [&](std::string_view section, const auto& def, const auto&... more) {
         for (const DefProblem& one : problems_of(def, more...))
-            problems.add({}, dotted(section, one.key), one.problem);
+            problems.add({}, dotted(section, one.key), one.what, one.remedy);
     };
     check_all("video", scene.video);
     for (std::size_t i = 0; i < scene.overlay.texts.size(); ++i)

@@ -7,8 +7,6 @@
 #include <exception>
 #include <new>
 #include <numbers>
-#include <regex>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -31,24 +29,15 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kLongestWait = std::chrono::seconds(20);
 constexpr int kMinSidePx = 160;
 
-/// The lines of an error with their places in the file, as the page shows them.
-Json problems_of(const std::string& message, const std::string& name) {
-    static const std::regex place_in_file("([0-9]+):([0-9]+): *");
-    Json problems = Json::array();
-    std::istringstream lines(message);
-    for (std::string line; std::getline(lines, line);) {
-        Json problem = {{"line", nullptr}, {"column", nullptr}};
-        std::smatch place;
-        if (line.starts_with(name + ":")) {
-            line.erase(0, name.size() + 1);
-            if (std::regex_search(line, place, place_in_file, std::regex_constants::match_continuous))
-                problem = {{"line", std::stoul(place[1])}, {"column", std::stoul(place[2])}};
-        }
-        const std::size_t begin = place.empty() ? 0 : static_cast<std::size_t>(place.length());
-        problem["text"] = printable(line.substr(std::min(line.find_first_not_of(' ', begin), line.size())));
-        problems.push_back(std::move(problem));
+/// A problem as the page shows it, which need not name the file at `path`.
+Json json_of(Problem problem, const std::string& path) {
+    Json json = {{"line", nullptr}, {"column", nullptr}};
+    if (problem.place.source == path) {
+        if (problem.place.line > 0) json = {{"line", problem.place.line}, {"column", problem.place.column}};
+        problem.place = {.source = {}, .key = problem.place.key};
     }
-    return problems;
+    json["text"] = printable_lines(problem.text());
+    return json;
 }
 
 /// True if a setting gives the value of this key, or of a table or list that the key lies in.
@@ -147,11 +136,11 @@ void Watch::work() {
             else
                 read_curves();
         } catch (const Error& error) {
-            if (!is_interruption(error.code())) fail(error.what());
+            if (!is_interruption(error.code())) fail(error.problems());
         } catch (const std::bad_alloc&) {
-            fail("out of memory; a smaller scene may help");
+            fail({{{}, "out of memory", "a smaller scene may help"}});
         } catch (const std::exception& error) {
-            fail(error.what());
+            fail({{{}, error.what(), {}}});
         }
     }
     shown_.reset();
@@ -244,9 +233,10 @@ void Watch::publish(Json film) {
     });
 }
 
-void Watch::fail(const std::string& message) {
+void Watch::fail(const std::vector<Problem>& problems) {
     update([&] {
-        problems_ = problems_of(message, def_.path);
+        problems_ = Json::array();
+        for (const Problem& problem : problems) problems_.push_back(json_of(problem, def_.path));
         is_busy_ = false;
         are_curves_wanted_ = false;
         ++version_;

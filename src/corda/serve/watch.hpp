@@ -68,7 +68,7 @@ class Watch : NonCopyable {
     void forget_film();
     [[nodiscard]] OnProgress progress();
     void publish(Json film);
-    void fail(const std::string& message);
+    void fail(const std::vector<Problem>& problems);
     void draw(std::int64_t k);
     void read_curves();
     [[nodiscard]] bool is_stale() const;

@@ -1,6 +1,7 @@
 // All mistakes of a file are reported at once, and each of them once.
 #include "corda/scene/problems.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <sstream>
@@ -137,6 +138,28 @@ TEST(SceneProblems, OfSettingsFollowThoseOfTheFile) {
                     StartsWith("--set rope[5].mass=1: rope: index 5 is out of range"),
                     StartsWith("--set world.drag=-1: world.drag: -1 is not >= 0")));
     EXPECT_THAT(problems_of(rope_with("mass = 0\n"), {"video.fbs=3"}).front(), StartsWith("swing.toml:4:8"));
+}
+
+TEST(SceneProblems, AreFieldsUntilTheyArePrinted) {
+    const auto fields_of = [](const std::string& toml, const std::vector<Setting>& settings) {
+        try {
+            static_cast<void>(parse_scene(toml, "swing.toml", settings));
+        } catch (const Error& error) {
+            std::vector<std::string> fields;
+            for (const auto& [place, what, remedy] : error.problems())
+                fields.push_back(fmt::format("{}|{}|{}|{}|{}|{}", place.source, place.line, place.column,
+                                             place.key, what, remedy));
+            return fields;
+        }
+        return std::vector<std::string>();
+    };
+    EXPECT_THAT(fields_of(rope_with("masss = 1\n"), {"rope[5].mass=1", "world.drag=-1"}),
+                ElementsAre("swing.toml|4|1|rope[0].masss|unknown key \"masss\"|did you mean \"mass\"?",
+                            "--set rope[5].mass=1|0|0|rope|index 5 is out of range; the list has 1|give 0",
+                            StartsWith("--set world.drag=-1|0|0|world.drag|-1 is not >= 0|give ")));
+    EXPECT_THAT(fields_of("schema = = 1\n", {}), ElementsAre(StartsWith("swing.toml|1|")));
+    EXPECT_THAT(fields_of(rope_with(""), {"mass"}),
+                ElementsAre(StartsWith("--set mass|0|0||there is no '='|")));
 }
 
 TEST(SceneProblems, OfSyntaxStandAlone) {
