@@ -55,9 +55,6 @@ auto add_command(CLI::App& app, Action& action, const std::string& name, const s
     return NewCommand<Options>{*command, *options};
 }
 
-/// The text of an example that `examples` lists.
-[[nodiscard]] std::string_view example_text(std::string_view name);
-
 /// The subcommand of that name; null if there is none.
 [[nodiscard]] const CLI::App* find_command(const CLI::App& app, std::string_view name);
 
@@ -70,48 +67,45 @@ auto add_command(CLI::App& app, Action& action, const std::string& name, const s
 /// Accepts a number from `low` to `high`. CLI::Range lets "nan" pass.
 [[nodiscard]] CLI::Validator within(double low, double high);
 
-/// A scene file and what the command line puts in the place of its values.
+/// A scene and what the command line puts in the place of its values.
 struct SceneOptions {
     std::string path;
-    std::vector<Setting> settings;
+    std::string from;                ///< a picture or a video that carries its scene, in place of `path`
+    std::vector<Setting> settings;   ///< of --set
+    std::vector<Setting> shortcuts;  ///< of options such as --fps; they count after those of --set
 
-    void add_to(CLI::App& command);
-    /// Makes `--name VALUE` stand for `--set key=VALUE`.
-    void add_shortcut(CLI::App& command, const std::string& name, const std::string& key,
-                      const std::string& help);
-    /// `--size WxH` for `--set video.size=[W,H]`.
-    void add_size(CLI::App& command);
-    /// `--fps`, whose help is `rate`, and `--duration`.
-    void add_timing(CLI::App& command, const std::string& rate = "frames per second");
-    /// `--from FILE` in place of a scene file.
-    void add_from(CLI::App& command);
-    /// Throws CLI::RequiredError if there is neither. To be called when the command line is parsed.
-    void require() const;
-    /// Whether the scene is that of a picture or a video.
-    [[nodiscard]] bool is_from() const { return !from_.empty(); }
-    /// The provenance in the file of `--from`, read once; warns if another version made it.
-    [[nodiscard]] const Provenance& provenance(const Console& console) const;
-    /// Throws corda::Error as load_scene does, but with kUsage if the scene is valid without the options
-    /// other than --set: then the command line is wrong, not the scene.
-    [[nodiscard]] Scene load(const Console& console) const;
-    /// True if the command line says video.size.
-    [[nodiscard]] bool gives_size() const;
-    /// Parses the scene with the additional settings `more`; `text` and `name` are used if no scene file was
-    /// given.
-    [[nodiscard]] Scene parse(const std::vector<Setting>& more, std::string_view text,
-                              const std::string& name) const;
     /// The file that no output may replace.
-    [[nodiscard]] const std::string& input() const { return is_from() ? from_ : path; }
-
-  private:
-    void check_size_from_file(const VideoDef& video) const;
-    [[nodiscard]] Scene load_from(const Provenance& origin) const;
-
-    std::string from_;
-    std::vector<Setting> of_options_;          ///< those of `settings` that did not come from --set
-    mutable std::optional<std::string> text_;  ///< of the scene file, which may be a pipe
-    mutable std::optional<Provenance> provenance_;
+    [[nodiscard]] const std::string& input() const { return from.empty() ? path : from; }
+    /// Throws CLI::RequiredError if there is no scene. To be called when the command line is parsed.
+    void require() const;
 };
+
+/// SCENE and `--set`.
+void add_scene(CLI::App& command, SceneOptions& scene);
+/// `--from FILE` in place of SCENE.
+void add_from(CLI::App& command, SceneOptions& scene);
+/// Makes `--name VALUE` stand for `--set key=VALUE`.
+void add_shortcut(CLI::App& command, SceneOptions& scene, const std::string& name, const std::string& key,
+                  const std::string& help);
+/// `--size WxH` for `--set video.size=[W,H]`.
+void add_size(CLI::App& command, SceneOptions& scene);
+/// `--fps`, whose help is `rate`, and `--duration`.
+void add_timing(CLI::App& command, SceneOptions& scene, const std::string& rate = "frames per second");
+/// Which OpenGL to draw with.
+void add_gl(CLI::App& command, FilmDef& film);
+/// `--fail-empty`.
+void add_fail_empty(CLI::App& command, bool& fails);
+
+/// A scene with the record of the file of `--from` that carries it.
+struct Loaded {
+    Scene scene;
+    Provenance origin;  ///< empty without --from
+};
+
+/// Warns if another version made the file of --from, and of texts that no frame shows. Throws corda::Error as
+/// load_scene does, but with kUsage if the scene is valid without the options other than --set: then the
+/// command line is wrong, not the scene.
+[[nodiscard]] Loaded load(const Console& console, const SceneOptions& options);
 
 /// Gives a scene another picture size, as `--size` does.
 void set_size(Scene& scene, int width_px, int height_px);
@@ -124,39 +118,6 @@ struct RequestedFrames {
 
 /// Reads "FIRST:END", either of which may be left out; std::nullopt for any other text.
 [[nodiscard]] std::optional<RequestedFrames> parse_frames(std::string_view text);
-
-/// Reads "I/N", 0 <= I < N, of the option --shard. Throws corda::Error (kUsage).
-[[nodiscard]] Shard parse_shard(const std::string& text);
-
-/// A moment of the motion that is to be drawn.
-struct RequestedTime {
-    double time_s = 0.0;
-    std::optional<std::int64_t> frame;  ///< if it was asked for by its number
-};
-
-/// Which moments are drawn: `--at` or `--frame`.
-struct TimeOptions {
-    std::vector<double> times_s;
-    std::vector<std::string> frames;
-
-    void add_to(CLI::App& command);
-    /// Throws CLI::RequiredError if neither option was given.
-    void require() const;
-    /// In the order of time. Throws corda::Error (kUsage) for a moment that the scene does not have.
-    [[nodiscard]] std::vector<RequestedTime> list(const Scene& scene) const;
-};
-
-/// "video.size=[640,360]" for "640x360". Throws corda::Error (kUsage).
-[[nodiscard]] std::string size_setting(const std::string& text);
-
-/// Which OpenGL to draw with.
-struct GlOptions {
-    std::string backend;
-    bool require_gpu = false;
-
-    void add_to(CLI::App& command);
-    void apply_to(FilmDef& film) const;
-};
 
 /// Shows how far the simulation of a film is once it takes more than a second, and ends it by a corda::Error
 /// if a signal asks for that. `console` must outlive it.
@@ -175,15 +136,14 @@ void warn_of_branch(const Console& console, const Film& film);
 
 /// Pictures in which nothing is in view.
 struct EmptyPictures {
-    bool are_failures = false;
     std::int64_t count = 0;
+    std::int64_t all = 0;  ///< empty or not
     double first_s = 0.0;
-
-    /// `--fail-empty`.
-    void add_to(CLI::App& command);
-    /// Warns of them; returns the exit code. `all`: how many pictures there are. `camera`: the scene's.
-    [[nodiscard]] ExitCode report(const Console& console, std::int64_t all, const CameraDef& camera) const;
 };
+
+/// Warns of empty pictures; returns the exit code. `fails`: they are a failure. `camera`: the scene's.
+[[nodiscard]] ExitCode report_empty(const Console& console, const EmptyPictures& empty, bool fails,
+                                    const CameraDef& camera);
 
 /// Reports the OpenGL driver and its platform with -v.
 void report_gl(const Console& console, const GlInfo& gl);

@@ -110,10 +110,6 @@ ExitCode list_examples(const Console& console) {
 
 }  // namespace
 
-std::string_view example_text(std::string_view name) {
-    return find_example(name)->text;
-}
-
 void add_init(CLI::App& app, Action& action) {
     auto [command, options] = add_command(
         app, action, "init", "write a commented scene to start from, or an example of a scene or a sweep",

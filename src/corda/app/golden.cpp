@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cinttypes>
+#include <cstdio>
 #include <optional>
 #include <string>
 
@@ -25,7 +27,6 @@ using golden::Verdict;
 
 struct GoldenOptions {
     golden::SuiteDef def;
-    GlOptions gl;
     std::string shard;
     std::string junit;
     std::string html;
@@ -51,6 +52,17 @@ std::string line_of(const Checked& picture, bool is_dry_run) {
     const std::string change =
         fmt::format("{}{}: ", is_dry_run ? "would be " : "", is_stale ? "removed" : "written");
     return fmt::format("{}: {}{}", picture.name, picture.changed ? change : "", fmt::join(parts, "; "));
+}
+
+/// Reads "I/N", 0 <= I < N.
+Shard parse_shard(const std::string& text) {
+    Shard shard;
+    const bool is_read = std::sscanf(text.c_str(), "%" SCNd64 "/%" SCNd64, &shard.index, &shard.count) == 2;
+    if (!is_read || fmt::format("{}/{}", shard.index, shard.count) != text || shard.index < 0 ||
+        shard.index >= shard.count)
+        throw_usage("--shard {}: is not I/N, the number of this shard (0 .. N - 1) and how many there are",
+                    text);
+    return shard;
 }
 
 /// Prints failures, changes and totals.
@@ -145,7 +157,6 @@ ExitCode run_suite(const Console& console, GoldenOptions options) {
         options.def.new_folder = drawn.emplace().file("new");
     if (!options.shard.empty()) options.def.shard = parse_shard(options.shard);
     if (!options.html.empty()) options.def.most_drawn = kMaxOnPage;
-    options.gl.apply_to(options.def.film);
     const golden::SuiteResult result =
         options.def.accepted.empty() ? run_until_asked(options.def) : golden::accept(options.def);
     const CancelScope finishing({}, CancelScope::Outer::kIgnored);  // an update has been published
@@ -207,7 +218,7 @@ void add_golden(CLI::App& app, Action& action) {
     command.add_option("--junit", options.junit, "also write the results as JUnit XML to this file");
     command.add_option("--set", options.def.settings, "key=value in place of what the scenes say")
         ->type_name("KEY=VALUE");
-    options.gl.add_to(command);
+    add_gl(command, options.def.film);
 }
 
 }  // namespace corda::app

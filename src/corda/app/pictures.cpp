@@ -18,6 +18,7 @@
 #include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
+#include "corda/core/timeline.hpp"
 #include "corda/film/film.hpp"
 #include "corda/film/plan_text.hpp"
 #include "interrupt.hpp"
@@ -28,113 +29,146 @@ namespace {
 constexpr double kScreenPpi = 96.0;
 constexpr double kPrintPpi = 300.0;
 
-/// Options that `still`, `strobe` and `sheet` share.
-struct FigureOptions {
+/// Options of `still`, `strobe` and `sheet`.
+struct PictureOptions {
     SceneOptions scene;
-    GlOptions gl;
-    EmptyPictures empty;
-    TimeOptions times;
+    FilmDef film;
+    std::vector<double> times_s;
+    std::vector<std::string> frames;
     std::string output;
     std::optional<double> width_mm;
     std::optional<double> pixels_per_inch;
     double shutter = 0.0;
+    int columns = 0;  ///< 0: what fills the picture best
+    bool fail_empty = false;
     bool force = false;
     bool dry_run = false;
-    // Of the file of `--from`.
-    std::vector<double> film_times_of_origin;
-    int columns_of_origin = 0;
-    bool blurs_as_video = false;  ///< it is a frame
 
-    /// `output_help` says what the output may be.
-    void add_to(CLI::App& command, const std::string& output_help);
-    /// The scene with the picture size that `--width-mm` asks for.
-    [[nodiscard]] Scene load(const Console& console) const;
-    [[nodiscard]] double shutter_of(const Scene& one) const {
-        return blurs_as_video ? one.video.shutter : shutter;
-    }
     /// Throws CLI::RequiredError if there is no scene, or no moment that is not that of `--from`.
-    void require() const;
-    /// Takes the options that the command line does not give from the file of `--from`, made by `command`.
-    void take_origin(const Console& console, std::string_view command);
-    /// The times that the film records in addition to those of frames.
-    [[nodiscard]] std::vector<double> film_times(const std::vector<RequestedTime>& some) const;
-    [[nodiscard]] Film film_of(const Console& console, const Scene& one,
-                               const std::vector<RequestedTime>& some) const;
-    /// The text chunks and the resolution of the file of a figure. `one` has the size of the picture;
-    /// `origin` gets its times, of which the film also has `all_s`.
-    [[nodiscard]] PngInfo png_info(const Scene& one, const std::vector<RequestedTime>& some,
-                                   PictureOrigin origin, const std::vector<double>& all_s) const;
-    /// Makes the only picture of a command, and reports it. `cell`: the scene in the size of a cell of a
-    /// sheet, else `one`.
-    ExitCode write_one(const Console& console, const Scene& one, const Scene& cell,
-                       const std::vector<RequestedTime>& some, const FigureDef& def) const;
-
-  private:
-    mutable std::optional<Provenance> made_;  ///< of the scene that png_info() is given
+    void require() const {
+        scene.require();
+        if (scene.from.empty() && times_s.empty() && frames.empty())
+            throw CLI::RequiredError("--at or --frame");
+    }
 };
 
-void FigureOptions::add_to(CLI::App& command, const std::string& output_help) {
-    scene.add_to(command);
-    scene.add_from(command);
-    times.add_to(command);
-    command.add_option("-o,--output", output, output_help)->required();
-    scene.add_size(command);
-    scene.add_timing(command);
-    command.add_option("--width-mm", width_mm, "width in print; the height follows from video.size")
-        ->check(within(1.0, 10000.0))
-        ->excludes("--size");
-    command
-        .add_option("--ppi", pixels_per_inch,
-                    "pixels per inch in print; 96, or 300 with --width-mm, whose pixels it sets")
-        ->check(within(1.0, 10000.0));
-    gl.add_to(command);
-    empty.add_to(command);
-    command.add_flag("--force", force, "replace existing files");
-    command.add_flag("--dry-run", dry_run, "check everything but OpenGL, and write nothing");
-}
+/// A moment of the motion that is to be drawn.
+struct RequestedTime {
+    double time_s = 0.0;
+    std::optional<std::int64_t> frame;  ///< if it was asked for by its number
+};
 
-void FigureOptions::require() const {
-    scene.require();
-    if (!scene.is_from()) times.require();
-}
+/// What the command `command` is to draw.
+struct Request {
+    std::string command;
+    PictureOptions options;            ///< with those of the file of `--from` that were left out
+    Scene scene;                       ///< in the size of the picture
+    std::vector<RequestedTime> times;  ///< in the order of time
+    std::vector<double> film_times_s;  ///< others of the file of `--from`, to which the camera is fitted
+};
 
-void FigureOptions::take_origin(const Console& console, std::string_view command) {
-    if (!scene.is_from() || !times.times_s.empty() || !times.frames.empty()) return;
-    const std::optional<PictureOrigin>& picture = scene.provenance(console).picture;
-    if (!picture) throw_usage("'{}' has no record of its time; give --at or --frame", scene.input());
-    const bool is_frame = picture->command == "frame" && command == "still";
-    if (picture->command != command && !is_frame) {
-        throw_usage("'{}' was made by `corda {}`; use that, or give --at or --frame", scene.input(),
-                    picture->command == "frame" ? "render" : picture->command);
+struct Picture {
+    std::string path;
+    std::vector<RequestedTime> times;
+};
+
+/// So many pictures are a video.
+constexpr std::int64_t kMaxTimes = 100'000;
+
+/// The frames that a word of `--frame` names.
+RequestedFrames frames_of(const std::string& word, const Scene& scene) {
+    const std::int64_t count = scene.video.scene_rate().frame_count(scene.world.duration_s);
+    RequestedFrames range;
+    if (const auto frame = whole_number<std::int64_t>(word)) {
+        range = {*frame, *frame + (*frame < count ? 1 : 0)};
+    } else if (const auto parsed = parse_frames(word)) {
+        range = *parsed;
+    } else {
+        const bool has_step = std::ranges::count(word, ':') > 1;
+        throw_usage("--frame {}: is neither a frame number nor a range FIRST:END of them{}", word,
+                    has_step ? "; a range has no step: list frames such as 0,24,48" : "");
     }
-    for (const PictureTime& time : picture->times) {
+    const std::int64_t end = range.end.value_or(count);
+    if (range.first < 0 || range.first >= end || end > count) {
+        throw_usage(
+            "--frame {}: the frames are 0 to {}, all of them the range 0:{}; world.duration sets the end",
+            word, count - 1, count);
+    }
+    return {range.first, end};
+}
+
+/// The moments of `--at` and `--frame`. Throws corda::Error (kUsage) for one that the scene does not have.
+std::vector<RequestedTime> requested_times(const PictureOptions& options, const Scene& scene) {
+    std::vector<RequestedTime> times;
+    for (const double time_s : options.times_s) {
+        const auto within_s = time_within(time_s, scene.world.duration_s);
+        if (!within_s) {
+            throw_usage("--at {}: is not within 0 .. {} s; world.duration sets the end", time_s,
+                        scene.world.duration_s);
+        }
+        times.push_back({*within_s, std::nullopt});
+    }
+    for (const std::string& word : options.frames) {
+        const RequestedFrames range = frames_of(word, scene);
+        const auto count = static_cast<std::int64_t>(times.size()) + *range.end - range.first;
+        if (count > kMaxTimes) {
+            throw_usage(
+                "--frame {}: are {} pictures or more, over the limit of {}; `corda render` makes a video of "
+                "them",
+                word, count, kMaxTimes);
+        }
+        for (std::int64_t k = range.first; k < *range.end; ++k)
+            times.push_back({scene.video.scene_rate().time_s(k), k});
+    }
+    std::ranges::stable_sort(times, {}, &RequestedTime::time_s);
+    return times;
+}
+
+/// Takes the options that the command line leaves out from the file of `--from`.
+void take_record(const std::optional<PictureOrigin>& record, Request& request) {
+    auto& [command, options, scene, times, film_times_s] = request;
+    if (options.scene.from.empty() || !options.times_s.empty() || !options.frames.empty()) return;
+    if (!record) throw_usage("'{}' has no record of its time; give --at or --frame", options.scene.from);
+    const bool is_frame = record->command == "frame" && command == "still";
+    if (record->command != command && !is_frame) {
+        throw_usage("'{}' was made by `corda {}`; use that, or give --at or --frame", options.scene.from,
+                    record->command == "frame" ? "render" : record->command);
+    }
+    for (const PictureTime& time : record->times) {
         if (time.frame)
-            times.frames.push_back(std::to_string(*time.frame));
+            options.frames.push_back(std::to_string(*time.frame));
         else
-            times.times_s.push_back(time.time_s);
+            options.times_s.push_back(time.time_s);
     }
-    film_times_of_origin = picture->film_times_s;
-    columns_of_origin = picture->columns;
-    blurs_as_video = is_frame && shutter == 0.0;
-    if (shutter == 0.0) shutter = picture->shutter;
-    if (!pixels_per_inch && !width_mm) pixels_per_inch = picture->pixels_per_inch;
+    film_times_s = record->film_times_s;
+    if (options.columns == 0) options.columns = record->columns;
+    if (options.shutter == 0.0) options.shutter = is_frame ? scene.video.shutter : record->shutter;
+    if (!options.pixels_per_inch && !options.width_mm) options.pixels_per_inch = record->pixels_per_inch;
 }
 
-Scene FigureOptions::load(const Console& console) const {
-    Scene one = scene.load(console);
-    if (!width_mm) return one;
-    const VideoDef& video = one.video;
-    const double width_px = std::round(*width_mm / kMmPerInch * pixels_per_inch.value_or(kPrintPpi));
+/// Gives the scene the picture size of `--width-mm`.
+void set_width(const PictureOptions& options, Scene& scene) {
+    const VideoDef& video = scene.video;
+    const double ppi = options.pixels_per_inch.value_or(kPrintPpi);
+    const double width_px = std::round(*options.width_mm / kMmPerInch * ppi);
     const double height_px = std::round(width_px * video.height_px / video.width_px);
     const bool is_sane = std::max(width_px, height_px) <= kMaxSidePx;
     if (!is_sane || !is_picture_size(std::lround(width_px), std::lround(height_px))) {
         throw_usage(
             "--width-mm {} at {} pixels per inch is {}x{} pixels, not 1 .. {} per side and {} in all; "
             "choose another width or --ppi",
-            *width_mm, pixels_per_inch.value_or(kPrintPpi), width_px, height_px, kMaxSidePx, kMaxPicturePx);
+            *options.width_mm, ppi, width_px, height_px, kMaxSidePx, kMaxPicturePx);
     }
-    set_size(one, static_cast<int>(width_px), static_cast<int>(height_px));
-    return one;
+    set_size(scene, static_cast<int>(width_px), static_cast<int>(height_px));
+}
+
+Request request_of(const Console& console, const PictureOptions& options, const char* command) {
+    Loaded loaded = load(console, options.scene);
+    Request request{command, options, std::move(loaded.scene), {}, {}};
+    take_record(loaded.origin.picture, request);
+    if (options.width_mm) set_width(options, request.scene);
+    request.times = requested_times(request.options, request.scene);
+    return request;
 }
 
 std::vector<double> times_of(const std::vector<RequestedTime>& some) {
@@ -143,93 +177,112 @@ std::vector<double> times_of(const std::vector<RequestedTime>& some) {
     return times_s;
 }
 
-Film FigureOptions::film_of(const Console& console, const Scene& one,
-                            const std::vector<RequestedTime>& some) const {
-    FilmDef def;
-    def.on_progress = show_progress(console, "simulate");
-    def.stills_s = times_of(some);
-    def.stills_shutter = shutter_of(one);
-    for (const double time_s : film_times_of_origin)
-        if (time_s <= one.world.duration_s) def.stills_s.push_back(time_s);
-    gl.apply_to(def);
-    Film film(one, def);
-    report_plan(console, film);
-    console.detail(fmt::format("{}: {}", film.scene().name, system_text(film.system())));
-    warn_of_room(console, film);
-    return film;
-}
-
-std::vector<double> FigureOptions::film_times(const std::vector<RequestedTime>& some) const {
-    std::vector<double> times_s = film_times_of_origin;
-    for (const RequestedTime& time : some)
+/// The times of a request that are no frames, and those of the file of `--from`.
+std::vector<double> times_between_frames(const Request& request) {
+    std::vector<double> times_s = request.film_times_s;
+    for (const RequestedTime& time : request.times)
         if (!time.frame) times_s.push_back(time.time_s);
     std::ranges::sort(times_s);
     times_s.erase(std::unique(times_s.begin(), times_s.end()), times_s.end());
     return times_s;
 }
 
-PngInfo FigureOptions::png_info(const Scene& one, const std::vector<RequestedTime>& some,
-                                PictureOrigin origin, const std::vector<double>& all_s) const {
+/// The text chunks and the resolution of a picture of `made`.
+PngInfo png_info(const Request& request, const Picture& picture, PictureOrigin origin, Provenance made) {
+    const auto& [command, options, scene, times, film_times_s] = request;
     std::string times_text;
     std::string frames;
-    for (const RequestedTime& time : some) {
+    for (const RequestedTime& time : picture.times) {
         times_text += fmt::format("{}{}", times_text.empty() ? "" : ", ", time.time_s);
         if (time.frame) frames += fmt::format("{}{}", frames.empty() ? "" : ", ", *time.frame);
-    }
-    const double ppi =
-        width_mm ? one.video.width_px * kMmPerInch / *width_mm : pixels_per_inch.value_or(kScreenPpi);
-    for (const RequestedTime& time : some)
         origin.times.push_back({time.frame, time.frame ? 0.0 : time.time_s});
+    }
+    const std::vector<double> all_s = times_between_frames(request);
     const bool are_origins = std::ranges::all_of(all_s, [&](double time_s) {
         return std::ranges::any_of(
             origin.times, [&](const PictureTime& time) { return !time.frame && time.time_s == time_s; });
     });
     if (!are_origins) origin.film_times_s = all_s;
+    const double ppi = options.width_mm ? scene.video.width_px * kMmPerInch / *options.width_mm
+                                        : options.pixels_per_inch.value_or(kScreenPpi);
     if (ppi != kScreenPpi) origin.pixels_per_inch = ppi;
-    if (!made_) made_ = provenance_of(one);
-    Provenance made = *made_;
     // A still of a frame has the bytes of the frame, whose number is elsewhere in the record.
-    const bool is_frame = origin.command == "still" && origin.times.front().frame &&
-                          shutter_of(one) == one.video.shutter && origin.film_times_s.empty() &&
+    const bool is_frame = command == "still" && origin.times.front().frame &&
+                          options.shutter == scene.video.shutter && origin.film_times_s.empty() &&
                           !origin.pixels_per_inch;
     if (!is_frame) made.picture = std::move(origin);
-    PngInfo info = picture_info(one.name, times_text, frames, provenance_text(std::move(made)));
+    PngInfo info = picture_info(scene.name, times_text, frames, provenance_text(std::move(made)));
     info.pixels_per_inch = ppi;
     return info;
 }
 
-ExitCode FigureOptions::write_one(const Console& console, const Scene& one, const Scene& cell,
-                                  const std::vector<RequestedTime>& some, const FigureDef& def) const {
-    if (!is_figure_path(output))
-        throw_usage("-o {}: is one picture, .png, .svg or .pdf; give such a name", output);
-    check_output(output, scene.input(), force);
-    const bool is_sheet = def.columns > 0;
-    const PictureOrigin origin{.command = is_sheet ? "sheet" : "strobe", .columns = def.columns};
-    Film film = film_of(console, cell, some);
-    EmptyPictures empties = empty;
-    if (!dry_run) {
-        if (output.ends_with(".png")) report_gl(console, film.gl());
-        const auto empty_s =
-            write_figure(output, film, def, png_info(one, some, origin, film_times(some)), {.force = force});
-        empties.count = std::ssize(empty_s);
-        if (!empty_s.empty()) empties.first_s = empty_s.front();
-        warn_of_branch(console, film);
-        console.result(output);
-    } else {
-        console.info(fmt::format("would write {}", output));
+/// Draws and writes the pictures; returns the times of empty ones. If interrupted, the message says how many
+/// were written.
+std::vector<double> write_pictures(const Request& request, const std::vector<Picture>& pictures,
+                                   const Film& film, FigureDef def) {
+    const PictureOrigin origin{.command = request.command, .columns = def.columns, .shutter = def.shutter};
+    const Provenance made = provenance_of(request.scene);
+    std::size_t written = 0;
+    std::vector<double> empty_s;
+    try {
+        for (const Picture& picture : pictures) {
+            check_cancelled();
+            def.times_s = times_of(picture.times);
+            const auto empty = write_figure(picture.path, film, def, png_info(request, picture, origin, made),
+                                            {.force = request.options.force});
+            empty_s.insert(empty_s.end(), empty.begin(), empty.end());
+            ++written;
+        }
+    } catch (const Error& error) {
+        if (written == 0 || error.code() != interruption()) throw;
+        throw_error(error.code(), "interrupted: {} of {} stills are written, the last of them {}", written,
+                    pictures.size(), pictures[written - 1].path);
     }
-    nlohmann::json json = film_json(film);
-    json["outputs"] = {{{"path", output}, {"times_s", times_of(some)}}};
-    json["width"] = one.video.width_px;
-    json["height"] = one.video.height_px;
-    json["empty"] = empties.count;
-    console.report(json);
-    return empties.report(console, is_sheet ? std::ssize(some) : 1, one.camera);
+    return empty_s;
 }
 
-struct Still : RequestedTime {
-    std::string path;
-};
+/// Makes the pictures of a command, and reports them. `cell`: the scene in the size of a cell of a sheet,
+/// otherwise the scene of the request.
+ExitCode draw(const Console& console, const Request& request, const Scene& cell, const FigureDef& def,
+              const std::vector<Picture>& pictures) {
+    const auto& [command, options, scene, times, film_times_s] = request;
+    FilmDef film_def = options.film;
+    film_def.on_progress = show_progress(console, "simulate");
+    film_def.stills_s = times_of(times);
+    film_def.stills_shutter = def.shutter;
+    for (const double time_s : film_times_s)
+        if (time_s <= scene.world.duration_s) film_def.stills_s.push_back(time_s);
+    const Film film(cell, film_def);
+    report_plan(console, film);
+    console.detail(fmt::format("{}: {}", scene.name, system_text(film.system())));
+    warn_of_room(console, film);
+    std::vector<double> empty_s;
+    if (!options.dry_run) {
+        if (pictures.front().path.ends_with(".png")) report_gl(console, film.gl());
+        empty_s = write_pictures(request, pictures, film, def);
+        warn_of_branch(console, film);
+    }
+    nlohmann::json json = film_json(film);
+    for (const Picture& picture : pictures) {
+        if (options.dry_run)
+            console.info(fmt::format("would write {}", picture.path));
+        else
+            console.result(picture.path);
+        nlohmann::json output = {{"path", picture.path}};
+        if (command == "still")
+            output["time_s"] = picture.times.front().time_s;
+        else
+            output["times_s"] = times_of(picture.times);
+        json["outputs"].push_back(std::move(output));
+    }
+    json["width"] = scene.video.width_px;
+    json["height"] = scene.video.height_px;
+    json["empty"] = empty_s.size();
+    console.report(json);
+    const std::int64_t all = command == "sheet" ? std::ssize(times) : std::ssize(pictures);
+    return report_empty(console, {std::ssize(empty_s), all, empty_s.empty() ? 0.0 : empty_s.front()},
+                        options.fail_empty, scene.camera);
+}
 
 /// False as well if the path cannot be examined: the write that follows says why.
 bool is_directory(const std::string& path) {
@@ -259,15 +312,13 @@ std::string name_of(const RequestedTime& time, const std::string& scene) {
     return name + ".png";
 }
 
-std::vector<Still> list_stills(const std::vector<RequestedTime>& times, const Scene& scene) {
-    std::vector<Still> stills;
-    for (const RequestedTime& time : times) stills.push_back({time, name_of(time, scene.name)});
-    const auto same = std::ranges::adjacent_find(stills, {}, &Still::path);
+std::vector<Picture> stills_of(const Request& request) {
+    const PictureOptions& options = request.options;
+    std::vector<Picture> stills;
+    for (const RequestedTime& time : request.times)
+        stills.push_back({name_of(time, request.scene.name), {time}});
+    const auto same = std::ranges::adjacent_find(stills, {}, &Picture::path);
     if (same != stills.end()) throw_usage("two stills would both be {}; ask for each time once", same->path);
-    return stills;
-}
-
-void set_paths(const FigureOptions& options, std::vector<Still>& stills) {
     if (is_picture(options.output)) {
         if (stills.size() != 1) {
             throw_usage(
@@ -277,94 +328,80 @@ void set_paths(const FigureOptions& options, std::vector<Still>& stills) {
         }
         stills.front().path = options.output;
     } else {
-        for (Still& still : stills)
+        for (Picture& still : stills)
             still.path = (std::filesystem::path(options.output) / still.path).string();
         check_folder(options.output);
         if (!options.dry_run) make_folder(options.output);
-        if (!is_directory(options.output)) return;
+        if (!is_directory(options.output)) return stills;
     }
-    for (const Still& still : stills) check_output(still.path, options.scene.input(), options.force);
+    for (const Picture& still : stills) check_output(still.path, options.scene.input(), options.force);
+    return stills;
 }
 
-/// Draws and writes the stills, and counts the empty ones. If interrupted, the message says how many were
-/// written.
-void write_each(const std::vector<Still>& stills, const FigureOptions& options, const Film& film,
-                EmptyPictures& empty) {
-    std::size_t written = 0;
-    const Scene& scene = film.scene();
-    const std::vector<double> stills_s = options.film_times({stills.begin(), stills.end()});
-    const PictureOrigin origin{.command = "still", .shutter = options.shutter_of(scene)};
-    try {
-        for (const Still& still : stills) {
-            check_cancelled();
-            const auto empty_s =
-                write_figure(still.path, film, {.times_s = {still.time_s}, .shutter = origin.shutter},
-                             options.png_info(scene, {still}, origin, stills_s), {.force = options.force});
-            ++written;
-            if (!empty_s.empty() && empty.count++ == 0) empty.first_s = still.time_s;
-        }
-    } catch (const Error& error) {
-        if (written == 0 || error.code() != interruption()) throw;
-        throw_error(error.code(), "interrupted: {} of {} stills are written, the last of them {}", written,
-                    stills.size(), stills[written - 1].path);
-    }
+/// The only picture of a request.
+std::vector<Picture> picture_of(const Request& request) {
+    const PictureOptions& options = request.options;
+    if (!is_figure_path(options.output))
+        throw_usage("-o {}: is one picture, .png, .svg or .pdf; give such a name", options.output);
+    check_output(options.output, options.scene.input(), options.force);
+    return {{options.output, request.times}};
 }
 
-ExitCode write_stills(const Console& console, FigureOptions options) {
-    options.take_origin(console, "still");
-    const Scene scene = options.load(console);
-    const std::vector<RequestedTime> times = options.times.list(scene);
-    std::vector<Still> stills = list_stills(times, scene);
-    set_paths(options, stills);
-    Film film = options.film_of(console, scene, times);
-    EmptyPictures empty = options.empty;
-    if (!options.dry_run) {
-        if (stills.front().path.ends_with(".png")) report_gl(console, film.gl());
-        write_each(stills, options, film, empty);
-        warn_of_branch(console, film);
-    }
-    nlohmann::json json = film_json(film);
-    json["outputs"] = nlohmann::json::array();
-    for (const Still& still : stills) {
-        if (options.dry_run) console.info(fmt::format("would write {}", still.path));
-        if (!options.dry_run) console.result(still.path);
-        json["outputs"].push_back({{"path", still.path}, {"time_s", still.time_s}});
-    }
-    json["width"] = scene.video.width_px;
-    json["height"] = scene.video.height_px;
-    json["empty"] = empty.count;
-    console.report(json);
-    return empty.report(console, std::ssize(stills), scene.camera);
+ExitCode draw_stills(const Console& console, const PictureOptions& options) {
+    const Request request = request_of(console, options, "still");
+    return draw(console, request, request.scene, {.times_s = {}, .shutter = request.options.shutter},
+                stills_of(request));
 }
 
-ExitCode write_strobe(const Console& console, FigureOptions options) {
-    options.take_origin(console, "strobe");
-    const Scene scene = options.load(console);
-    std::vector<RequestedTime> times = options.times.list(scene);
+ExitCode draw_strobe(const Console& console, const PictureOptions& options) {
+    Request request = request_of(console, options, "strobe");
     const auto is_same = [](const RequestedTime& a, const RequestedTime& b) { return a.time_s == b.time_s; };
-    times.erase(std::unique(times.begin(), times.end(), is_same), times.end());
-    return options.write_one(console, scene, scene, times, {.times_s = times_of(times)});
+    request.times.erase(std::unique(request.times.begin(), request.times.end(), is_same),
+                        request.times.end());
+    return draw(console, request, request.scene, {}, picture_of(request));
 }
 
-struct SheetOptions : FigureOptions {
-    int columns = 0;
-};
+ExitCode draw_sheet(const Console& console, const PictureOptions& options) {
+    const Request request = request_of(console, options, "sheet");
+    Scene cell = request.scene;
+    const FigureDef def = contact_sheet(cell, times_of(request.times), request.options.columns);
+    return draw(console, request, cell, def, picture_of(request));
+}
 
-ExitCode write_sheet(const Console& console, SheetOptions options) {
-    options.take_origin(console, "sheet");
-    if (options.columns == 0) options.columns = options.columns_of_origin;
-    const Scene scene = options.load(console);
-    const std::vector<RequestedTime> times = options.times.list(scene);
-    Scene cell = scene;
-    const FigureDef def = contact_sheet(cell, times_of(times), options.columns);
-    return options.write_one(console, scene, cell, times, def);
+/// Adds the options of all three; `output_help` says what the output may be.
+void add_options(CLI::App& command, PictureOptions& options, const std::string& output_help) {
+    add_scene(command, options.scene);
+    add_from(command, options.scene);
+    auto* at = command.add_option("--at", options.times_s, "times in seconds, e.g. 0,0.5,1.25")
+                   ->delimiter(',')
+                   ->type_name("T[,T...]");
+    auto* frame =
+        command
+            .add_option("--frame", options.frames, "frames of the video from 0, or ranges FIRST <= k < END")
+            ->delimiter(',')
+            ->type_name("K|FIRST:END[,...]");
+    at->excludes(frame);
+    command.add_option("-o,--output", options.output, output_help)->required();
+    add_size(command, options.scene);
+    add_timing(command, options.scene);
+    command.add_option("--width-mm", options.width_mm, "width in print; the height follows from video.size")
+        ->check(within(1.0, 10000.0))
+        ->excludes("--size");
+    command
+        .add_option("--ppi", options.pixels_per_inch,
+                    "pixels per inch in print; 96, or 300 with --width-mm, whose pixels it sets")
+        ->check(within(1.0, 10000.0));
+    add_gl(command, options.film);
+    add_fail_empty(command, options.fail_empty);
+    command.add_flag("--force", options.force, "replace existing files");
+    command.add_flag("--dry-run", options.dry_run, "check everything but OpenGL, and write nothing");
 }
 
 }  // namespace
 
 void add_still(CLI::App& app, Action& action) {
-    auto [command, options] = add_command(app, action, "still", "draw frames at exact times", write_stills);
-    options.add_to(command, "folder, or a .png, .svg or .pdf file for one still");
+    auto [command, options] = add_command(app, action, "still", "draw frames at exact times", draw_stills);
+    add_options(command, options, "folder, or a .png, .svg or .pdf file for one still");
     command
         .add_option("--shutter", options.shutter,
                     "blur the motion as a video of this video.shutter does; stills are sharp otherwise")
@@ -373,14 +410,15 @@ void add_still(CLI::App& app, Action& action) {
 
 void add_strobe(CLI::App& app, Action& action) {
     auto [command, options] = add_command(
-        app, action, "strobe", "draw several poses in one picture, earlier ones fainter", write_strobe);
-    options.add_to(command, "picture: .png, .svg or .pdf");
+        app, action, "strobe", "draw several poses in one picture, earlier ones fainter", draw_strobe);
+    add_options(command, options, "picture: .png, .svg or .pdf");
 }
 
 void add_sheet(CLI::App& app, Action& action) {
     auto [command, options] = add_command(
-        app, action, "sheet", "draw a contact sheet: a picture of cells, one per time", write_sheet);
-    options.add_to(command, "picture: .png, .svg or .pdf; --size and --width-mm are those of all of it");
+        app, action, "sheet", "draw a contact sheet: a picture of cells, one per time", draw_sheet);
+    add_options(command, options,
+                "picture: .png, .svg or .pdf; --size and --width-mm are those of all of it");
     command
         .add_option("--columns", options.columns, "cells side by side; default: what fills the picture best")
         ->check(within(1.0, 1000.0));

@@ -92,7 +92,7 @@ void report_in_words(const Console& console, const Film& film, const std::vector
 ExitCode plan(const Console& console, const PlanOptions& options) {
     FilmDef def;
     def.on_progress = show_progress(console, "plan");
-    Film film(options.scene.load(console), def);
+    Film film(load(console, options.scene).scene, def);
     report_plan(console, film);
     const CameraDef& camera = film.camera();
     if (options.toml) {
@@ -122,9 +122,9 @@ ExitCode plan(const Console& console, const PlanOptions& options) {
 void add_plan(CLI::App& app, Action& action) {
     auto [command, options] = add_command(
         app, action, "plan", "show the model, the method and the reason for it, and its error", plan);
-    options.scene.add_to(command);
-    options.scene.add_size(command);
-    options.scene.add_timing(command);
+    add_scene(command, options.scene);
+    add_size(command, options.scene);
+    add_timing(command, options.scene);
     command.add_flag("--toml", options.toml,
                      "print [solver] and [camera] as they were chosen; in place of the scene's own, "
                      "they freeze it");

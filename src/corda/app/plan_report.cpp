@@ -103,11 +103,9 @@ void warn_of_branch(const Console& console, const Film& film) {
                     *branched_s));
 }
 
-void EmptyPictures::add_to(CLI::App& command) {
-    command.add_flag("--fail-empty", are_failures, "exit 7 if nothing is in view in a picture");
-}
-
-ExitCode EmptyPictures::report(const Console& console, std::int64_t all, const CameraDef& camera) const {
+ExitCode report_empty(const Console& console, const EmptyPictures& empty, bool fails,
+                      const CameraDef& camera) {
+    const auto& [count, all, first_s] = empty;
     if (count == 0) return ExitCode::kOk;
     const std::string which =
         all == 1 ? fmt::format("the picture at {:.6g} s is empty", first_s)
@@ -116,7 +114,12 @@ ExitCode EmptyPictures::report(const Console& console, std::int64_t all, const C
         "{}: nothing is in view of the camera; change {}, or leave them out, and all is in view", which,
         camera.path.empty() ? "camera.center and camera.height"
                             : "center and height of the keys of camera.path"));
-    return are_failures ? ExitCode::kMismatch : ExitCode::kOk;
+    return fails ? ExitCode::kMismatch : ExitCode::kOk;
+}
+
+void report_gl(const Console& console, const GlInfo& gl) {
+    console.detail(fmt::format("drawing with {} ({}), OpenGL {}, by {}", gl.renderer, gl.vendor, gl.version,
+                               gl.platform));
 }
 
 nlohmann::json film_json(const Film& film) {

@@ -29,10 +29,10 @@ namespace {
 
 struct RenderOptions {
     SceneOptions scene;
-    GlOptions gl;
-    EmptyPictures empty;
+    FilmDef film;
     std::string output;
     std::string frames;
+    bool fail_empty = false;
     bool pad = false;
     bool force = false;
     bool resume = false;
@@ -41,27 +41,25 @@ struct RenderOptions {
     void require() const { scene.require(); }
 };
 
-/// Puts "FIRST:END" into `def`, either of which may be left out.
-void parse_range(std::string_view text, RenderDef& def) {
-    if (text.empty()) return;
-    if (const auto range = parse_frames(text)) {
-        def.first = range->first;
-        def.end = range->end;
-        return;
-    }
-    throw_usage("--frames {}: is not FIRST:END, two frame numbers (END is not drawn)", text);
-}
-
-/// "FIRST:END" of the command line; of a file that is rendered again its own, unless the scene gets another
-/// number of frames.
-std::string range_of(const Console& console, const RenderOptions& options) {
-    const std::vector<std::string>& settings = options.scene.settings;
-    const bool has_its_frames = std::ranges::none_of(settings, [](const std::string& setting) {
+/// Which frames are drawn, and how their files are written. Without --frames a file is repeated with its own
+/// frames, unless the scene gets another number of them.
+RenderDef render_def(const RenderOptions& options, const std::string& frames_of_origin) {
+    RenderDef def;
+    def.force = options.force;
+    def.resume = options.resume;
+    const auto changes_frames = [](const Setting& setting) {
         return setting.starts_with("world.duration") || setting.starts_with("video.fps") ||
                setting.starts_with("video.speed");
-    });
-    const bool takes_recorded = options.scene.is_from() && options.frames.empty() && has_its_frames;
-    return takes_recorded ? options.scene.provenance(console).frames : options.frames;
+    };
+    const bool has_its_frames = std::ranges::none_of(options.scene.settings, changes_frames) &&
+                                std::ranges::none_of(options.scene.shortcuts, changes_frames);
+    const std::string& frames = options.frames.empty() && has_its_frames ? frames_of_origin : options.frames;
+    if (frames.empty()) return def;
+    const auto range = parse_frames(frames);
+    if (!range) throw_usage("--frames {}: is not FIRST:END, two frame numbers (END is not drawn)", frames);
+    def.first = range->first;
+    def.end = range->end;
+    return def;
 }
 
 bool is_one_file(const std::string& output) {
@@ -177,55 +175,40 @@ void check_adjacent_pictures(const VideoDef& video, const std::string& output, s
     }
 }
 
-/// Simulates the scene, and reports its plan.
-Film make_film(const Console& console, const Scene& scene, const CheckedOutput& output, const FilmDef& def) {
-    Film film(scene, def);
-    report_plan(console, film);
-    const VideoDef& video = scene.video;
-    console.info(fmt::format("{}: {}, method {}; {} of {}x{} at {} per second{}", scene.name,
-                             system_text(film.system()), method_names(film.plan()),
-                             counted(output.end() - output.first(), "frame"), video.width_px, video.height_px,
-                             video.fps.rational().text(),
-                             video.speed == Rational{1, 1} ? "" : ", at speed " + video.speed.text()));
-    warn_of_room(console, film);
-    return film;
-}
-
-RenderDef render_def(const Console& console, const RenderOptions& options) {
-    RenderDef def;
-    def.force = options.force;
-    def.resume = options.resume;
-    parse_range(range_of(console, options), def);
-    return def;
-}
-
 ExitCode render(const Console& console, const RenderOptions& options) {
     const double start_s = now_s();
-    Scene scene = options.scene.load(console);
+    auto [scene, origin] = load(console, options.scene);
     if (options.pad) {
         set_size(scene, scene.video.width_px + scene.video.width_px % 2,
                  scene.video.height_px + scene.video.height_px % 2);
     }
-    const RenderDef def = render_def(console, options);
+    const RenderDef def = render_def(options, origin.frames);
     check_standard_output(console, options.output);
     const CheckedOutput output = check_render(scene, options.output, def, options.scene.input());
     const VideoDef& video = output.video().def;
     if (!options.frames.empty() && !options.force)
         check_adjacent_pictures(video, options.output, output.first(), output.end());
     report_format(console, scene, output);
+
     OnProgress on_progress = show_progress(console, "simulate");
-    FilmDef film_def;
+    FilmDef film_def = options.film;
     film_def.on_progress = [&](std::int64_t done, std::int64_t all) {
         return !on_progress || on_progress(done, all);
     };
-    options.gl.apply_to(film_def);
-    Film film = make_film(console, scene, output, film_def);
+    const Film film(scene, film_def);
+    report_plan(console, film);
+    const std::int64_t count = output.end() - output.first();
+    console.info(
+        fmt::format("{}: {}, method {}; {} of {}x{} at {} per second{}", scene.name,
+                    system_text(film.system()), method_names(film.plan()), counted(count, "frame"),
+                    scene.video.width_px, scene.video.height_px, scene.video.fps.rational().text(),
+                    scene.video.speed == Rational{1, 1} ? "" : ", at speed " + scene.video.speed.text()));
+    warn_of_room(console, film);
     if (options.dry_run) {
         console.report(film_json(film));
         return ExitCode::kOk;
     }
 
-    const std::int64_t count = output.end() - output.first();
     const GlInfo gl = film.gl();
     report_gl(console, gl);
     on_progress = {};  // from now on, simulation shows as frames that are drawn
@@ -237,42 +220,42 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     progress.reset();
     if (rendered.reader_left) return ExitCode::kOk;
     if (!rendered.complete) throw Error(interruption(), words_of_interruption(options, count, rendered));
+
     const double wall_s = now_s() - start_s;
     report_rendered(console, is_one_file(options.output), rendered, wall_s);
     warn_of_branch(console, film);
     if (!def.end) warn_of_other_pictures(console, options.output, output.end());
     if (!is_standard_output(options.output)) console.result(options.output);
     console.report(report(film, video, options, rendered, wall_s, gl.renderer));
-    const EmptyPictures empty{options.empty.are_failures, rendered.empty_frames, rendered.first_empty_s};
-    return empty.report(console, rendered.frames, film.scene().camera);
+    return report_empty(console, {rendered.empty_frames, rendered.frames, rendered.first_empty_s},
+                        options.fail_empty, scene.camera);
 }
 
 }  // namespace
 
 void add_render(CLI::App& app, Action& action) {
     auto [command, options] = add_command(app, action, "render", "turn a scene into a video", render);
-    options.scene.add_to(command);
-    options.scene.add_from(command);
+    add_scene(command, options.scene);
+    add_from(command, options.scene);
     command.add_option("-o,--output", options.output, "the ending chooses the format: " + endings_text())
         ->required();
-    options.scene.add_size(command);
+    add_size(command, options.scene);
     command.add_flag("--pad", options.pad, "make odd sides even, by a column or a row more, as 4:2:0 needs");
-    options.scene.add_timing(command, "frames per second, e.g. 60 or 30000/1001");
-    options.scene.add_shortcut(command, "--crf", "video.crf",
-                               "quality, 1 (best) .. 51 of H.264 and H.265, .. 63 of AV1 and VP9");
-    options.scene.add_shortcut(command, "--preset", "video.preset",
-                               "speed: ultrafast .. placebo, of AV1 and VP9 0 (slowest) .. 13, .. 8");
-    options.scene.add_shortcut(command, "--codec", "video.codec", "encoder, if not the ending's default");
-    options.scene.add_shortcut(
-        command, "--pix", "video.pix",
-        "pixels: 420, 444 (sharper coloured edges; browsers and QuickTime refuse H.264 "
-        "High 4:4:4) or rgba");
-    options.scene.add_shortcut(command, "--threads", "video.threads",
-                               "threads of the encoder, on which the bytes depend");
-    options.scene.add_shortcut(command, "--jobs", "video.jobs", "threads that draw; 0: one per core");
+    add_timing(command, options.scene, "frames per second, e.g. 60 or 30000/1001");
+    add_shortcut(command, options.scene, "--crf", "video.crf",
+                 "quality, 1 (best) .. 51 of H.264 and H.265, .. 63 of AV1 and VP9");
+    add_shortcut(command, options.scene, "--preset", "video.preset",
+                 "speed: ultrafast .. placebo, of AV1 and VP9 0 (slowest) .. 13, .. 8");
+    add_shortcut(command, options.scene, "--codec", "video.codec", "encoder, if not the ending's default");
+    add_shortcut(command, options.scene, "--pix", "video.pix",
+                 "pixels: 420, 444 (sharper coloured edges; browsers and QuickTime refuse H.264 "
+                 "High 4:4:4) or rgba");
+    add_shortcut(command, options.scene, "--threads", "video.threads",
+                 "threads of the encoder, on which the bytes depend");
+    add_shortcut(command, options.scene, "--jobs", "video.jobs", "threads that draw; 0: one per core");
     command.add_option("--frames", options.frames, "only frames FIRST <= k < END")->type_name("FIRST:END");
-    options.gl.add_to(command);
-    options.empty.add_to(command);
+    add_gl(command, options.film);
+    add_fail_empty(command, options.fail_empty);
     command.add_flag("--force", options.force, "replace an existing output");
     command.add_flag("--resume", options.resume, "of pictures: draw those that are missing or damaged");
     command.add_flag("--dry-run", options.dry_run, "check everything but OpenGL, and write nothing");

@@ -242,7 +242,7 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
         console.warning(
             "--velocity, --tension, --energy, --diagnostics and --decimal change the file of -o "
             "alone; add -o FILE, or -o - for standard output");
-    Scene scene = options.scene.load(console);
+    const Scene scene = load(console, options.scene).scene;
     const bool to_file = !options.output.empty() && !to_stdout;
     if (to_file) check_output(options.output, options.scene.path, options.force, OutputKind::kStream);
     OnProgress on_progress = show_progress(console, "plan");
@@ -278,12 +278,12 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
 void add_simulate(CLI::App& app, Action& action) {
     auto [command, options] = add_command(
         app, action, "simulate", "run the simulation alone; positions as CSV, figures as JSON", simulate);
-    options.scene.add_to(command);
+    add_scene(command, options.scene);
     command.add_option(
         "-o,--output", options.output,
         "CSV file, or - for standard output; none: figures only. The first line names the columns: t in s, "
         "x0, y0, ... in m, after the label of a rope or net that has one");
-    options.scene.add_timing(command, "rows per second");
+    add_timing(command, options.scene, "rows per second");
     command.add_flag("--velocity", options.columns.velocities,
                      "add the velocity of every particle: vx0_m_s, vy0_m_s, ...");
     command.add_flag(

@@ -12,9 +12,8 @@ namespace {
 
 struct WatchOptions {
     SceneOptions scene;
+    serve::WatchDef watch;
     serve::ServerDef server;
-    int side_px = 640;
-    GlOptions gl;
 };
 
 ExitCode watch(const Console& console, const WatchOptions& options) {
@@ -22,11 +21,9 @@ ExitCode watch(const Console& console, const WatchOptions& options) {
         throw Error(ExitCode::kUsage, "a scene on standard input does not change; give the path of a file");
     constexpr int kWaitMs = 200;
     serve::FileWatch file(options.scene.path);
-    serve::WatchDef def{.path = options.scene.path,
-                        .settings = options.scene.settings,
-                        .longest_side_px = options.side_px,
-                        .film = {}};
-    options.gl.apply_to(def.film);
+    serve::WatchDef def = options.watch;
+    def.path = options.scene.path;
+    def.settings = options.scene.settings;
     serve::Watch watch(std::move(def));
     const serve::Server server(options.server,
                                [&watch](const serve::Request& request) { return watch.answer(request); });
@@ -51,8 +48,8 @@ void add_watch(CLI::App& app, Action& action) {
     auto [command, options] =
         add_command(app, action, "watch",
                     "show a scene on a page of this machine, new with every save of its file", watch);
-    options.scene.add_to(command);
-    options.gl.add_to(command);
+    add_scene(command, options.scene);
+    add_gl(command, options.watch.film);
     command.add_option("--port", options.server.port, "port at 127.0.0.1; 0: any that is free")
         ->check(within(0, 65535));
     command
@@ -60,7 +57,7 @@ void add_watch(CLI::App& app, Action& action) {
             "--host", options.server.hosts,
             "a name other than localhost by which a proxy, such as that of Jupyter, reaches this page")
         ->type_name("NAME");
-    command.add_option("--side", options.side_px, "longest side of the pictures in pixels")
+    command.add_option("--side", options.watch.longest_side_px, "longest side of the pictures in pixels")
         ->check(within(160, kMaxSidePx));
 }
 
