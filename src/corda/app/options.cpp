@@ -6,7 +6,6 @@
 
 #include "commands.hpp"
 #include "corda/core/text.hpp"
-#include "corda/scene/read_file.hpp"
 #include "corda/scene/schema.hpp"
 
 namespace corda::app {

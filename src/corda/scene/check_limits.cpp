@@ -1,4 +1,4 @@
-#include "corda/scene/check_limits.hpp"
+#include "corda/scene/readers.hpp"
 
 #include <fmt/format.h>
 

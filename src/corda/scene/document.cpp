@@ -9,7 +9,6 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
 #include "corda/core/text.hpp"
-#include "corda/scene/read_file.hpp"
 
 namespace corda::scene {
 namespace {
@@ -82,6 +81,15 @@ class CancellableBuffer : public std::streambuf {
 };
 
 }  // namespace
+
+void check_file_bytes(const std::string& source_name, std::size_t bytes) {
+    if (bytes <= static_cast<std::size_t>(Limits::kFileBytes)) return;
+    throw Error(
+        ExitCode::kInvalidScene,
+        Problem{{.source = source_name, .key = {}},
+                fmt::format("{} bytes or more are over the limit of {} bytes", bytes, Limits::kFileBytes),
+                "a scene has fewer particles"});
+}
 
 std::size_t find_deep_key(std::string_view text) {
     constexpr std::string_view kEndsOfKeys = "\n,=[]{}";

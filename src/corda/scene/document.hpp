@@ -19,6 +19,9 @@ namespace corda::scene {
 /// part.
 inline constexpr int kKeyParts = 32;
 
+/// Throws corda::Error (kInvalidScene) if `bytes` is more than Limits::kFileBytes.
+void check_file_bytes(const std::string& source_name, std::size_t bytes);
+
 /// Parses TOML text. Throws kInvalidScene with `source_name`:line:column and the parser's description, and
 /// kInterrupted if cancelled.
 [[nodiscard]] toml::table parse_document(std::string_view text, const std::string& source_name);

@@ -122,6 +122,22 @@ struct BodySize {
 /// as a rope of two shapes, leaves it unknown.
 [[nodiscard]] std::optional<BodySize> read_rope_size(const TableReader& rope, int reach);
 
+struct SceneSize {
+    std::vector<std::optional<BodySize>> bodies;  ///< ropes, then nets; empty if not known
+    bool has_bars = false;                        ///< whether the bars of all bodies are known
+    bool fits = true;                             ///< whether they are within the limits
+};
+
+/// Counts particles and bars without making any. Too many particles, bars or points of trails of all
+/// bodies together are a problem.
+[[nodiscard]] SceneSize count_bodies(const Sections& sections, const SolverSection& solver,
+                                     const Scene& scene);
+
+/// Adds a problem if the video has no frame or too many, or the simulation would take too many steps or bar
+/// updates, by each body's own method.
+void check_work(const Sections& sections, const SolverSection& solver, const SceneSize& size,
+                const Scene& scene);
+
 /// A rope whose size `read_rope_size` has found, and its shape. If the size is not known, the particles are
 /// left out.
 [[nodiscard]] RopeDef read_rope(const TableReader& rope, const std::optional<BodySize>& size, int reach,

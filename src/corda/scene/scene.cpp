@@ -1,17 +1,21 @@
 #include "corda/scene/scene.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
 #include <filesystem>
+#include <system_error>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
+#include "corda/core/file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/scene/check_limits.hpp"
 #include "corda/scene/document.hpp"
 #include "corda/scene/field.hpp"
-#include "corda/scene/read_file.hpp"
 #include "corda/scene/readers.hpp"
 #include "corda/view/font.hpp"
 
@@ -83,7 +87,44 @@ void check_texts(const Sections& sections, const Scene& scene) {
     place->add_problem(problem);
 }
 
+[[noreturn]] void fail_io(const std::string& path, int reason) {
+    if (reason == EINTR)
+        throw_error(ExitCode::kInterrupted, "{}: interrupted while waiting for the scene", path);
+    const bool is_denied = reason == EACCES || reason == EPERM;
+    throw Error(ExitCode::kIo, Problem{{.source = path, .key = {}},
+                                       fmt::format("cannot read the scene file: {}",
+                                                   std::generic_category().message(reason)),
+                                       is_denied ? std::string(hint_for_errno(reason, FileUse::kRead))
+                                                 : "give the path of a TOML file"});
+}
+
+/// Standard input stays open: closing it would give its number to the next file.
+FileHandle open_scene(const std::string& path) {
+    return FileHandle(path == "-" ? ::fdopen(::dup(STDIN_FILENO), "rb") : std::fopen(path.c_str(), "rb"));
+}
+
 }  // namespace
+
+std::string scene::read_file(const std::string& path) {
+    check_path(path);
+    const std::string name = source_name(path);
+    const FileHandle file = open_scene(path);
+    if (!file) fail_io(name, errno);
+    std::string text;
+    std::array<char, 65536> block{};
+    while (true) {
+        errno = 0;
+        const std::size_t count = std::fread(block.data(), 1, block.size(), file.get());
+        if (std::ferror(file.get()) != 0) fail_io(name, errno);  // also after a part: a signal came
+        if (count == 0) return text;
+        text.append(block.data(), count);
+        check_file_bytes(name, text.size());
+    }
+}
+
+std::string scene::source_name(const std::string& path) {
+    return path == "-" ? "stdin" : path;
+}
 
 Scene load_scene(const std::string& path, const std::vector<Setting>& settings) {
     return parse_scene(read_file(path), source_name(path), settings);

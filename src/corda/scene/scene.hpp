@@ -138,6 +138,17 @@ using Setting = std::string;
 /// check_cancelled() is called some ten times a second in a scene of a million particles.
 [[nodiscard]] Scene load_scene(const std::string& path, const std::vector<Setting>& settings = {});
 
+namespace scene {
+
+/// The bytes of a scene file or of a pipe; "-" is standard input. Throws corda::Error: kIo with the system's
+/// reason, kInvalidScene if there are too many.
+[[nodiscard]] std::string read_file(const std::string& path);
+
+/// Name of the file at `path` in messages.
+[[nodiscard]] std::string source_name(const std::string& path);
+
+}  // namespace scene
+
 /// Settings that do not come from the command line; messages name `place` before them in place of
 /// --set.
 struct PlacedSettings {

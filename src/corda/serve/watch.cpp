@@ -17,7 +17,7 @@
 #include "corda/film/tracked_particle.hpp"
 #include "corda/media/bytes.hpp"
 #include "corda/scene/document.hpp"
-#include "corda/scene/read_file.hpp"
+#include "corda/scene/scene.hpp"
 #include "embedded_page.hpp"
 
 namespace corda::serve {

@@ -1,7 +1,6 @@
 // What asks for too much is refused before any memory is taken: these tests return at once.
 #include <gmock/gmock.h>
 
-#include "corda/scene/check_limits.hpp"
 #include "corda/scene/schema.hpp"
 #include "unit/scene/support.hpp"
 
