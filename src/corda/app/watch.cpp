@@ -1,9 +1,6 @@
-
-
 #include "corda/serve/watch.hpp"
 #include "commands.hpp"
 #include "corda/core/text.hpp"
-#include "corda/serve/file_watch.hpp"
 #include "corda/serve/server.hpp"
 #include "interrupt.hpp"
 
@@ -24,6 +21,10 @@ ExitCode watch(const Console& console, const WatchOptions& options) {
     serve::WatchDef def = options.watch;
     def.path = options.scene.path;
     def.settings = options.scene.settings;
+    // The page shows them too, but whoever has misspelt the path looks here.
+    def.on_problems = [&console](const std::vector<Problem>& problems) {
+        for (const Problem& problem : problems) console.error(problem.text());
+    };
     serve::Watch watch(std::move(def));
     const serve::Server server(options.server,
                                [&watch](const serve::Request& request) { return watch.answer(request); });

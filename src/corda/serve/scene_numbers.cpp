@@ -109,6 +109,13 @@ std::vector<Setting> settings_of(const NumberChanges& changes, const std::vector
     return settings;
 }
 
+bool sets(const Setting& setting, const std::string& key) {
+    const auto inner = scene::parse_key(key);
+    const auto outer = scene::parse_key(std::string_view(setting).substr(0, setting.find('=')));
+    return inner && outer && outer->size() <= inner->size() &&
+           std::equal(outer->begin(), outer->end(), inner->begin());
+}
+
 std::string with_changes(std::string text, const std::string& name, const NumberChanges& changes) {
     std::vector<Found> all = Collector().collect(scene::parse_document(text, name));
     for (const auto& change : changes)

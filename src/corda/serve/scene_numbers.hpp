@@ -27,6 +27,9 @@ struct SceneNumber {
 [[nodiscard]] std::vector<SceneNumber> numbers_of(std::string_view text, const std::string& name,
                                                   const std::vector<Setting>& settings = {});
 
+/// True if a setting gives the value of this key, or of a table or list that the key lies in.
+[[nodiscard]] bool sets(const Setting& setting, const std::string& key);
+
 /// New values of numbers, by their keys.
 using NumberChanges = std::map<std::string, double>;
 

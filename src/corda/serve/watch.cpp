@@ -1,14 +1,28 @@
 #include "corda/serve/watch.hpp"
 
 #include <fmt/format.h>
+#include <poll.h>
+#include <sys/inotify.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
 #include <chrono>
+#include <condition_variable>
+#include <cstdint>
 #include <exception>
+#include <filesystem>
+#include <mutex>
 #include <new>
 #include <numbers>
+#include <optional>
 #include <string_view>
+#include <system_error>
 #include <utility>
+
+#include <nlohmann/json.hpp>
 
 #include "corda/core/cancel.hpp"
 #include "corda/core/output_file.hpp"
@@ -16,15 +30,47 @@
 #include "corda/film/plan_text.hpp"
 #include "corda/film/tracked_particle.hpp"
 #include "corda/media/bytes.hpp"
-#include "corda/scene/document.hpp"
 #include "corda/scene/scene.hpp"
+#include "corda/serve/picture_queue.hpp"
+#include "corda/serve/scene_numbers.hpp"
 #include "embedded_page.hpp"
 
 namespace corda::serve {
-namespace {
 
 using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
+
+/// A film as requests see it. A film that takes its place is another object.
+struct ShownFilm {
+    std::int64_t number;
+    Film film;
+    Json words;  ///< what the page says of it
+    PictureQueue pictures;
+    bool are_curves_wanted = false;
+    std::optional<std::string> curves = {};
+};
+
+/// What the thread of a watch and those of requests share.
+struct WatchState {
+    explicit WatchState(WatchDef its) : def(std::move(its)) {}
+
+    std::mutex mutex;  ///< of all below
+    std::condition_variable changed;
+    WatchDef def;
+    bool is_ending = false;
+    bool is_reload_asked = true;
+    std::int64_t version = 1;  ///< of all below
+    bool is_busy = true;       ///< the scene is being loaded and simulated
+    double progress = 0.0;     ///< of that, 0 .. 1
+    std::vector<Problem> problems;
+    std::string text;  ///< of the file as it was loaded last
+    std::vector<SceneNumber> numbers;
+    NumberChanges changes;
+    std::int64_t films = 0;           ///< number of films so far
+    std::shared_ptr<ShownFilm> film;  ///< the last good one; null before the first
+};
+
+namespace {
 
 constexpr auto kLongestWait = std::chrono::seconds(20);
 constexpr int kMinSidePx = 160;
@@ -38,14 +84,6 @@ Json json_of(Problem problem, const std::string& path) {
     }
     json["text"] = printable_lines(problem.text());
     return json;
-}
-
-/// True if a setting gives the value of this key, or of a table or list that the key lies in.
-bool sets(const Setting& setting, const std::string& key) {
-    const auto inner = scene::parse_key(key);
-    const auto outer = scene::parse_key(std::string_view(setting).substr(0, setting.find('=')));
-    return inner && outer && outer->size() <= inner->size() &&
-           std::equal(outer->begin(), outer->end(), inner->begin());
 }
 
 Json json_of(const SceneNumber& number, const NumberChanges& changes) {
@@ -79,184 +117,103 @@ std::int64_t number_in(const Request& request, std::string_view name) {
     return found == request.query.end() ? 0 : number_of(found->second);
 }
 
-}  // namespace
-
-Watch::Watch(WatchDef def) : def_(std::move(def)) {
-    thread_ = std::jthread([this] { work(); });
-}
-
-Watch::~Watch() {
-    end();
-    thread_.join();
-}
-
+/// Calls `change` under the lock, and wakes who waits.
 template <class Change>
-void Watch::update(const Change& change) {
+void update(WatchState& state, const Change& change) {
     {
-        const std::lock_guard lock(mutex_);
+        const std::lock_guard lock(state.mutex);
         change();
     }
-    changed_.notify_all();
+    state.changed.notify_all();
 }
 
-void Watch::end() {
-    update([this] { is_ending_ = true; });
-}
+// The thread of a watch.
 
-void Watch::reload() {
-    update([this] { is_reload_asked_ = true; });
-}
-
-bool Watch::is_stale() const {
-    const std::lock_guard lock(mutex_);
-    return is_ending_ || is_reload_asked_;
-}
-
-void Watch::work() {
-    const CancelScope scope([this] { return !is_stale(); });
-    while (true) {
-        std::optional<std::int64_t> frame;
-        bool loads = false;
-        bool draws = false;
-        {
-            std::unique_lock lock(mutex_);
-            changed_.wait(lock, [&] {
-                frame = next_frame();
-                return is_ending_ || is_reload_asked_ || are_curves_wanted_ || frame;
-            });
-            if (is_ending_) break;
-            loads = std::exchange(is_reload_asked_, false);
-            draws = frame && (!are_curves_wanted_ || is_awaited(*frame));
-        }
-        try {
-            if (loads)
-                load();
-            else if (draws)
-                draw(*frame);
-            else
-                read_curves();
-        } catch (const Error& error) {
-            if (!is_interruption(error.code())) fail(error.problems());
-        } catch (const std::bad_alloc&) {
-            fail({{{}, "out of memory", "a smaller scene may help"}});
-        } catch (const std::exception& error) {
-            fail({{{}, error.what(), {}}});
-        }
-    }
-    shown_.reset();
-}
-
-void Watch::forget_film() {
-    const std::lock_guard lock(mutex_);
-    film_ = nullptr;
-    frames_ = 0;
-    ++film_number_;
-    pictures_.clear();
-    picture_bytes_ = 0;
-    curves_.reset();
-}
-
-OnProgress Watch::progress() {
-    return [this, shown = Clock::now()](std::int64_t done, std::int64_t total) mutable {
+OnProgress progress_of(WatchState& state) {
+    return [&state, shown = Clock::now()](std::int64_t done, std::int64_t total) mutable {
         constexpr auto kSilent = std::chrono::milliseconds(300);
         if (const auto now = Clock::now(); now - shown > kSilent) {
             shown = now;
-            update([&] {
-                progress_ = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0.0;
-                ++version_;
+            update(state, [&] {
+                state.progress = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0.0;
+                ++state.version;
             });
         }
         return true;
     };
 }
 
-void Watch::load() {
-    int side_px = 0;
-    NumberChanges changes;
-    std::vector<Setting> settings;
-    update([&] {
-        is_busy_ = true;
-        progress_ = 0.0;
-        ++version_;
-        side_px = def_.longest_side_px;
-        changes = changes_;
-        settings = def_.settings;
-    });
-    const std::string text = scene::read_file(def_.path);
-    const std::vector<SceneNumber> numbers = numbers_of(text, def_.path, settings);
-    {
-        const std::lock_guard lock(mutex_);
-        text_ = text;
-        numbers_ = numbers;
-        std::erase_if(changes_, [&](const auto& change) {  // of a number that the file has no more
-            return std::ranges::none_of(
-                numbers, [&](const SceneNumber& number) { return number.key == change.first; });
-        });
-    }
-    Scene scene = parse_scene(text, def_.path, settings, {"slider", settings_of(changes, numbers)});
-    const std::pair full_px(scene.video.width_px, scene.video.height_px);
-    scene.video.scale_to(std::min(side_px, std::max(full_px.first, full_px.second)));
-    FilmDef def = def_.film;
-    def.readings.velocities = true;
-    def.on_progress = progress();
-    const Film shown(scene, def);
-    static_cast<void>(shown.state(shown.frame_count() - 1));  // a motion that diverges is an error
-    static_cast<void>(shown.gl());                            // so is a driver that cannot draw it
-    forget_film();
-    shown_ = shown;
-    const VideoDef& video = shown.scene().video;
-    const Rational fps = video.fps.rational();
-    publish({{"name", shown.scene().name},
-             {"frames", shown.frame_count()},
-             {"fps", static_cast<double>(fps.num) / static_cast<double>(fps.den)},
-             {"frame_s", shown.time_s(1)},
-             {"width", video.width_px},
-             {"height", video.height_px},
-             {"full", {full_px.first, full_px.second}},
-             {"plan", plan_lines(shown)}});
-}
-
-void Watch::publish(Json film) {
-    std::int64_t playhead = 0;
-    {
-        const std::lock_guard lock(mutex_);
-        frames_ = film["frames"].get<std::int64_t>();
-        playhead = playhead_ = std::clamp<std::int64_t>(playhead_, 0, frames_ - 1);
-        film["number"] = film_number_;
-        film_ = std::move(film);
-    }
-    draw(playhead);  // before the page asks for it
-    update([this] {
-        problems_ = Json::array();
-        is_busy_ = false;
-        ++version_;
-    });
-}
-
-void Watch::fail(const std::vector<Problem>& problems) {
-    update([&] {
-        problems_ = Json::array();
-        for (const Problem& problem : problems) problems_.push_back(json_of(problem, def_.path));
-        is_busy_ = false;
-        are_curves_wanted_ = false;
-        ++version_;
-    });
-}
-
-void Watch::draw(std::int64_t k) {
+void draw(WatchState& state, ShownFilm& shown, std::int64_t k) {
     Picture picture;
     try {
-        picture.png = media::png_bytes(shown_->frame(k), {});
+        picture.png = media::png_bytes(shown.film.frame(k), {});
     } catch (const Error& error) {
         if (is_interruption(error.code())) throw;
         picture.error = error.what();
     }
-    update([&] { keep(k, std::move(picture)); });
+    update(state, [&] { shown.pictures.keep(k, std::move(picture)); });
 }
 
-void Watch::read_curves() {
+/// Puts a film in the place of the last one, and draws the frame that is shown.
+void show(WatchState& state, const Film& film, const Json& full_px) {
+    const VideoDef& video = film.scene().video;
+    const Rational fps = video.fps.rational();
+    Json words = {{"name", film.scene().name},
+                  {"frames", film.frame_count()},
+                  {"fps", static_cast<double>(fps.num) / static_cast<double>(fps.den)},
+                  {"frame_s", film.time_s(1)},
+                  {"width", video.width_px},
+                  {"height", video.height_px},
+                  {"full", full_px},
+                  {"plan", plan_lines(film)}};
+    std::shared_ptr<ShownFilm> shown;
+    update(state, [&] {
+        const std::int64_t playhead = state.film ? state.film->pictures.playhead() : 0;
+        words["number"] = ++state.films;
+        shown = state.film = std::make_shared<ShownFilm>(
+            ShownFilm{state.films, film, words, {film.frame_count(), state.def.picture_bytes, playhead}});
+    });
+    draw(state, *shown, shown->pictures.playhead());  // before the page asks for it
+    update(state, [&] {
+        state.problems.clear();
+        state.is_busy = false;
+        ++state.version;
+    });
+}
+
+void load(WatchState& state) {
+    WatchDef def;
+    NumberChanges changes;
+    update(state, [&] {
+        state.is_busy = true;
+        state.progress = 0.0;
+        ++state.version;
+        def = state.def;
+        changes = state.changes;
+    });
+    const std::string text = scene::read_file(def.path);
+    const std::vector<SceneNumber> numbers = numbers_of(text, def.path, def.settings);
+    update(state, [&] {
+        state.text = text;
+        state.numbers = numbers;
+        std::erase_if(state.changes, [&](const auto& change) {  // of a number that the file has no more
+            return std::ranges::find(numbers, change.first, &SceneNumber::key) == numbers.end();
+        });
+    });
+    Scene scene = parse_scene(text, def.path, def.settings, {"slider", settings_of(changes, numbers)});
+    const auto [width_px, height_px] = std::pair(scene.video.width_px, scene.video.height_px);
+    scene.video.scale_to(std::min(def.longest_side_px, std::max(width_px, height_px)));
+    def.film.readings.velocities = true;
+    def.film.on_progress = progress_of(state);
+    const Film film(scene, def.film);
+    static_cast<void>(film.state(film.frame_count() - 1));  // a motion that diverges is an error
+    static_cast<void>(film.gl());                           // so is a driver that cannot draw it
+    show(state, film, {width_px, height_px});
+}
+
+void read_curves(WatchState& state, ShownFilm& shown) {
     constexpr std::int64_t kMaxPoints = 1200;
-    const Film& film = *shown_;
+    const Film& film = shown.film;
     const auto tracked = film::tracked_particles(film.system());
     const std::int64_t stride = 1 + (film.frame_count() - 1) / kMaxPoints;
     Json curves = {{"t", Json::array()},
@@ -265,178 +222,262 @@ void Watch::read_curves() {
                    {"potential_j", Json::array()}};
     for (std::int64_t k = 0; k < film.frame_count(); k += stride) {
         check_cancelled();
-        const State state = film.state(k);
+        const State now = film.state(k);
         curves["t"].push_back(film.time_s(k));
         if (!tracked.empty() && tracked.front().pin)
-            curves["angle_deg"].push_back(film::turning_of(tracked.front(), state, nullptr).x * 180.0 /
+            curves["angle_deg"].push_back(film::turning_of(tracked.front(), now, nullptr).x * 180.0 /
                                           std::numbers::pi);
-        const Energy energy = film.energy_of(state);
+        const Energy energy = film.energy_of(now);
         curves["kinetic_j"].push_back(energy.kinetic_j);
         curves["potential_j"].push_back(energy.potential_j());
     }
-    update([&] {
-        curves_ = curves.dump();
-        are_curves_wanted_ = false;
+    update(state, [&] {
+        shown.curves = curves.dump();
+        shown.are_curves_wanted = false;
     });
 }
 
-/// How many frames the film plays from the playhead to frame `k`.
-std::int64_t Watch::distance(std::int64_t k) const {
-    return k >= playhead_ ? k - playhead_ : k - playhead_ + frames_;
+void fail(WatchState& state, const std::vector<Problem>& problems) {
+    update(state, [&] {
+        state.problems = problems;
+        state.is_busy = false;
+        if (state.film) state.film->are_curves_wanted = false;
+        ++state.version;
+    });
+    if (state.def.on_problems) state.def.on_problems(problems);
 }
 
-/// The frame to draw next: one that was asked for, or the next one after the playhead while there is room.
-std::optional<std::int64_t> Watch::next_frame() const {
-    if (film_.is_null() || is_busy_) return std::nullopt;
-    if (is_awaited(playhead_) && !pictures_.contains(playhead_)) return playhead_;
-    for (auto next = waiting_.lower_bound({film_number_, 0}); next != waiting_.end(); ++next)
-        if (!pictures_.contains(next->second)) return next->second;
-    if (std::ssize(pictures_) >= frames_) return std::nullopt;
-    std::int64_t ahead = 0;
-    while (pictures_.contains((playhead_ + ahead) % frames_)) ++ahead;
-    const auto is_farther = [&](const auto& entry) { return distance(entry.first) > ahead; };
-    // Half of the room, so that a frame that is drawn ahead is not itself the first one to go.
-    const bool has_room =
-        picture_bytes_ < def_.picture_bytes / 2 || std::ranges::any_of(pictures_, is_farther);
-    return has_room ? std::optional((playhead_ + ahead) % frames_) : std::nullopt;
+/// What the thread does next.
+struct Job {
+    bool is_end = false;
+    bool is_load = false;
+    std::shared_ptr<ShownFilm> film = {};
+    std::optional<std::int64_t> frame = {};  ///< to draw; none: the curves are read
+};
+
+Job wait_for_job(WatchState& state) {
+    std::unique_lock lock(state.mutex);
+    Job job;
+    state.changed.wait(lock, [&] {
+        job.film = state.is_busy ? nullptr : state.film;
+        job.frame = job.film ? job.film->pictures.next() : std::nullopt;
+        return state.is_ending || state.is_reload_asked || job.frame ||
+               (job.film && job.film->are_curves_wanted);
+    });
+    job.is_end = state.is_ending;
+    job.is_load = std::exchange(state.is_reload_asked, false);
+    if (job.film && job.film->are_curves_wanted && job.frame && !job.film->pictures.is_awaited(*job.frame))
+        job.frame.reset();
+    return job;
 }
 
-void Watch::keep(std::int64_t k, Picture picture) {
-    picture_bytes_ += picture.png.size();
-    pictures_.insert_or_assign(k, std::move(picture));
-    // One that a request waits for stays until it is taken.
-    const auto rank = [&](const auto& entry) { return is_awaited(entry.first) ? -1 : distance(entry.first); };
-    while (picture_bytes_ > def_.picture_bytes && pictures_.size() > 1) {
-        const auto last = std::ranges::max_element(pictures_, {}, rank);
-        if (is_awaited(last->first)) break;
-        picture_bytes_ -= last->second.png.size();
-        pictures_.erase(last);
-    }
-}
-
-Response Watch::answer(const Request& request) {
-    if (!request.is_post) {
-        if (request.path.empty()) return page_response("text/html", kWatchHtml);
-        if (request.path == "style.css") return page_response("text/css", kStyleCss);
-        if (request.path == "watch.js") return page_response("text/javascript", kWatchJs);
-        if (request.path == "state") return state_after(number_in(request, "after"));
-        if (request.path == "curves") return curves(number_in(request, "film"));
-        const std::string_view path = request.path;
-        constexpr std::string_view kFrame = "frame/";
-        constexpr std::string_view kPng = ".png";
-        if (path.starts_with(kFrame) && path.ends_with(kPng))
-            return frame(number_of(path.substr(kFrame.size(), path.size() - kFrame.size() - kPng.size())),
-                         number_in(request, "film"));
-        return text_response(404, "there is no such page\n");
-    }
-    const Json body = Json::parse(request.body, nullptr, false);
-    if (request.path == "number" && body.is_object()) return change_number(body);
-    if (request.path == "write") return write_file();
-    if (request.path == "side" && body.is_object() && body.contains("px") && body["px"].is_number_integer()) {
-        {
-            const std::lock_guard lock(mutex_);
-            def_.longest_side_px = std::clamp(body["px"].get<int>(), kMinSidePx, kMaxSidePx);
+void work(WatchState& state) {
+    const CancelScope scope([&state] {
+        const std::lock_guard lock(state.mutex);
+        return !state.is_ending && !state.is_reload_asked;
+    });
+    for (Job job = wait_for_job(state); !job.is_end; job = wait_for_job(state)) {
+        try {
+            if (job.is_load)
+                load(state);
+            else if (job.frame)
+                draw(state, *job.film, *job.frame);
+            else
+                read_curves(state, *job.film);
+        } catch (const Error& error) {
+            if (!is_interruption(error.code())) fail(state, error.problems());
+        } catch (const std::bad_alloc&) {
+            fail(state, {{{}, "out of memory", "a smaller scene may help"}});
+        } catch (const std::exception& error) {
+            fail(state, {{{}, error.what(), {}}});
         }
-        reload();
-        return {};
     }
-    return text_response(400, "no such request\n");
 }
 
-Response Watch::state_after(std::int64_t version) {
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, kLongestWait, [&] { return is_ending_ || version_ != version; });
+// The threads of requests.
+
+void ask_for_reload(WatchState& state) {
+    update(state, [&] { state.is_reload_asked = true; });
+}
+
+Response state_after(WatchState& state, std::int64_t version) {
+    std::unique_lock lock(state.mutex);
+    state.changed.wait_for(lock, kLongestWait, [&] { return state.is_ending || state.version != version; });
+    Json problems = Json::array();
+    for (const Problem& problem : state.problems) problems.push_back(json_of(problem, state.def.path));
     Json numbers = Json::array();
-    for (const SceneNumber& number : numbers_) numbers.push_back(json_of(number, changes_));
+    for (const SceneNumber& number : state.numbers) numbers.push_back(json_of(number, state.changes));
     return {200, "application/json",
-            Json{{"version", version_},
-                 {"busy", is_busy_},
-                 {"progress", progress_},
-                 {"ended", is_ending_},
-                 {"file", def_.path},
-                 {"film", film_},
-                 {"problems", problems_},
+            Json{{"version", state.version},
+                 {"busy", state.is_busy},
+                 {"progress", state.progress},
+                 {"ended", state.is_ending},
+                 {"file", state.def.path},
+                 {"film", state.film ? state.film->words : Json()},
+                 {"problems", problems},
                  {"numbers", numbers},
-                 {"changes", changes_.size()}}
+                 {"changes", state.changes.size()}}
                 .dump(-1, ' ', false, Json::error_handler_t::replace)};
 }
 
-Response Watch::frame(std::int64_t k, std::int64_t film) {
-    std::unique_lock lock(mutex_);
-    if (film != film_number_ || k < 0 || k >= frames_)
-        return text_response(410, "this frame is not in the present film\n");
-    playhead_ = k;
-    const auto waiting = waiting_.insert({film, k});
-    changed_.notify_all();
-    const auto is_over = [&] { return is_ending_ || film != film_number_ || pictures_.contains(k); };
-    changed_.wait_for(lock, kLongestWait, is_over);
-    waiting_.erase(waiting);
-    if (film != film_number_) return text_response(410, "this frame is not in the present film\n");
-    const auto found = pictures_.find(k);
-    if (found == pictures_.end()) return text_response(503, "this frame is not drawn yet; ask again\n");
-    if (!found->second.error.empty()) return text_response(422, found->second.error);
-    return {200, "image/png", found->second.png};
+Response frame(WatchState& state, std::int64_t k, std::int64_t number) {
+    const auto is_gone = [] { return text_response(410, "this frame is not in the present film\n"); };
+    std::unique_lock lock(state.mutex);
+    const std::shared_ptr<ShownFilm> film = state.film;
+    if (!film || film->number != number || k < 0 || k >= film->pictures.frames()) return is_gone();
+    film->pictures.await(k);
+    state.changed.notify_all();
+    state.changed.wait_for(lock, kLongestWait, [&] {
+        return state.is_ending || state.film != film || film->pictures.find(k) != nullptr;
+    });
+    film->pictures.leave(k);
+    if (state.film != film) return is_gone();
+    const Picture* const picture = film->pictures.find(k);
+    if (picture == nullptr) return text_response(503, "this frame is not drawn yet; ask again\n");
+    if (!picture->error.empty()) return text_response(422, picture->error);
+    return {200, "image/png", picture->png};
 }
 
-Response Watch::curves(std::int64_t film) {
-    std::unique_lock lock(mutex_);
-    if (film != film_number_ || film_.is_null())
+Response curves(WatchState& state, std::int64_t number) {
+    std::unique_lock lock(state.mutex);
+    const std::shared_ptr<ShownFilm> film = state.film;
+    if (!film || film->number != number)
         return text_response(410, "these curves are not of the present film\n");
-    if (!curves_) are_curves_wanted_ = true;
-    changed_.notify_all();
-    changed_.wait_for(lock, kLongestWait,
-                      [&] { return is_ending_ || film != film_number_ || curves_ || !are_curves_wanted_; });
-    if (film != film_number_ || !(curves_ || are_curves_wanted_))
+    if (!film->curves) film->are_curves_wanted = true;
+    state.changed.notify_all();
+    state.changed.wait_for(lock, kLongestWait, [&] {
+        return state.is_ending || state.film != film || film->curves || !film->are_curves_wanted;
+    });
+    if (state.film != film || !(film->curves || film->are_curves_wanted))
         return text_response(410, "there are no curves\n");
-    if (!curves_) return text_response(503, "the curves are not read yet; ask again\n");
-    return {200, "application/json", *curves_};
+    if (!film->curves) return text_response(503, "the curves are not read yet; ask again\n");
+    return {200, "application/json", *film->curves};
 }
 
-Response Watch::change_number(const Json& body) {
+Response change_number(WatchState& state, const Json& body) {
     {
-        const std::lock_guard lock(mutex_);
-        const auto number = std::ranges::find_if(numbers_, [&](const SceneNumber& candidate) {
+        const std::lock_guard lock(state.mutex);
+        const auto number = std::ranges::find_if(state.numbers, [&](const SceneNumber& candidate) {
             return body.contains("key") && body["key"] == candidate.key;
         });
         const Json value = body.value("value", Json());
-        if (number == numbers_.end()) return text_response(400, "the scene has no such number\n");
+        if (number == state.numbers.end()) return text_response(400, "the scene has no such number\n");
         if (value.is_number() && value.get<double>() != number->value)
-            changes_[number->key] = value.get<double>();
+            state.changes[number->key] = value.get<double>();
         else
-            changes_.erase(number->key);
+            state.changes.erase(number->key);
     }
-    reload();
+    ask_for_reload(state);
     return {};
 }
 
-Response Watch::write_file() {
+Response write_file(WatchState& state) {
+    std::string path;
     std::string text;
     NumberChanges changes;
     {
-        const std::lock_guard lock(mutex_);
-        if (is_busy_ || is_reload_asked_ || !problems_.empty())
+        const std::lock_guard lock(state.mutex);
+        if (state.is_busy || state.is_reload_asked || !state.problems.empty())
             return text_response(409,
                                  "numbers are written once the scene with them is shown without errors\n");
-        text = text_;
-        changes = changes_;
+        path = state.def.path;
+        text = state.text;
+        changes = state.changes;
     }
-    if (scene::read_file(def_.path) != text)
+    if (scene::read_file(path) != text)
         return text_response(409, "the file has changed; look at its new state, and write again\n");
-    save_file(def_.path, with_changes(text, def_.path, changes));
+    save_file(path, with_changes(text, path, changes));
     {
-        const std::lock_guard lock(mutex_);
+        const std::lock_guard lock(state.mutex);
         // What has changed since stays a change, and a number in the file counts again in place of --set.
         for (const auto& [key, value] : changes) {
-            if (const auto now = changes_.find(key); now != changes_.end() && now->second == value)
-                changes_.erase(now);
-            for (SceneNumber& number : numbers_)
+            if (const auto now = state.changes.find(key); now != state.changes.end() && now->second == value)
+                state.changes.erase(now);
+            for (SceneNumber& number : state.numbers)
                 if (number.key == key) number.value = value;
-            std::erase_if(def_.settings,
+            std::erase_if(state.def.settings,
                           [&changed = key](const Setting& setting) { return sets(setting, changed); });
         }
     }
-    reload();
+    ask_for_reload(state);
     return {};
+}
+
+Response answer_post(WatchState& state, const Request& request) {
+    const Json body = Json::parse(request.body, nullptr, false);
+    if (request.path == "number" && body.is_object()) return change_number(state, body);
+    if (request.path == "write") return write_file(state);
+    if (request.path != "side" || !body.is_object() || !body.value("px", Json()).is_number_integer())
+        return text_response(400, "no such request\n");
+    const int side_px = std::clamp(body["px"].get<int>(), kMinSidePx, kMaxSidePx);
+    update(state, [&] { state.def.longest_side_px = side_px; });
+    ask_for_reload(state);
+    return {};
+}
+
+}  // namespace
+
+Watch::Watch(WatchDef def) : state_(std::make_unique<WatchState>(std::move(def))) {
+    thread_ = std::jthread([this] { work(*state_); });
+}
+
+Watch::~Watch() {
+    end();
+    thread_.join();
+}
+
+void Watch::end() {
+    update(*state_, [this] { state_->is_ending = true; });
+}
+
+void Watch::reload() {
+    ask_for_reload(*state_);
+}
+
+Response Watch::answer(const Request& request) {
+    if (request.is_post) return answer_post(*state_, request);
+    if (request.path.empty()) return page_response("text/html", kWatchHtml);
+    if (request.path == "style.css") return page_response("text/css", kStyleCss);
+    if (request.path == "watch.js") return page_response("text/javascript", kWatchJs);
+    if (request.path == "state") return state_after(*state_, number_in(request, "after"));
+    if (request.path == "curves") return curves(*state_, number_in(request, "film"));
+    const std::string_view path = request.path;
+    constexpr std::string_view kFrame = "frame/";
+    constexpr std::string_view kPng = ".png";
+    if (path.starts_with(kFrame) && path.ends_with(kPng))
+        return frame(*state_,
+                     number_of(path.substr(kFrame.size(), path.size() - kFrame.size() - kPng.size())),
+                     number_in(request, "film"));
+    return text_response(404, "there is no such page\n");
+}
+
+FileWatch::FileWatch(const std::string& path)
+    : path_(path), inotify_(::inotify_init1(IN_CLOEXEC | IN_NONBLOCK)), last_(stamp()) {
+    // The folder is watched, because many editors put a new file in the place of the old one.
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    constexpr unsigned kEvents = IN_CLOSE_WRITE | IN_MOVED_TO | IN_DELETE;
+    if (inotify_ && ::inotify_add_watch(inotify_.get(), folder.empty() ? "." : folder.c_str(), kEvents) >= 0)
+        return;
+    const int reason = errno;
+    if (reason != EMFILE && reason != ENFILE && reason != ENOSPC) fail_file("watch", path, reason);
+    throw_error(ExitCode::kTemporary,
+                "cannot watch '{}': {}; raise fs.inotify.max_user_instances and fs.inotify.max_user_watches",
+                path, std::generic_category().message(reason));
+}
+
+bool FileWatch::wait(int timeout_ms) {
+    pollfd events{inotify_.get(), POLLIN, 0};
+    static_cast<void>(::poll(&events, 1, timeout_ms));
+    alignas(inotify_event) std::array<char, 4096> ignored{};
+    while (::read(inotify_.get(), ignored.data(), ignored.size()) > 0) continue;
+    const Stamp now = stamp();
+    return std::exchange(last_, now) != now;
+}
+
+FileWatch::Stamp FileWatch::stamp() const {
+    struct ::stat info {};
+    if (::stat(path_.c_str(), &info) != 0) return {};
+    return {info.st_mtim.tv_sec, info.st_mtim.tv_nsec, info.st_size, info.st_ino};
 }
 
 }  // namespace corda::serve

@@ -1,20 +1,13 @@
 #pragma once
 
-#include <condition_variable>
-#include <cstdint>
-#include <map>
-#include <mutex>
-#include <optional>
-#include <set>
+#include <functional>
+#include <memory>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
+#include "corda/core/file.hpp"
 #include "corda/film/film.hpp"
-#include "corda/serve/scene_numbers.hpp"
 #include "corda/serve/server.hpp"
 
 namespace corda::serve {
@@ -26,7 +19,11 @@ struct WatchDef {
     int longest_side_px = 640;      ///< of the pictures, which keep the shape of video.size
     std::size_t picture_bytes = std::size_t{96} << 20U;  ///< room for pictures that are kept
     FilmDef film;                                        ///< how to reach OpenGL
+    /// Called on a thread of the watch with the problems that keep it from showing the file; may be empty.
+    std::function<void(const std::vector<Problem>&)> on_problems = {};
 };
+
+struct WatchState;
 
 /// A scene file as a film that follows the file, for a page of a Server. A thread of its own simulates and
 /// draws; a change of the file or of a number interrupts it, and the last good film stays until the next one
@@ -54,60 +51,34 @@ class Watch : NonCopyable {
     [[nodiscard]] Response answer(const Request& request);
 
   private:
-    using Json = nlohmann::json;
-    struct Picture {
-        std::string png;
-        std::string error;  ///< in its place
+    std::unique_ptr<WatchState> state_;
+    std::jthread thread_;
+};
+
+/// Notices changes of a file, also by programs that put another file in its place.
+class FileWatch {
+  public:
+    /// Throws corda::Error: kTemporary if the system watches no more files, kIo if there is no such folder.
+    explicit FileWatch(const std::string& path);
+
+    /// Waits up to `timeout_ms` for a change of the folder. Whether the file has changed, its time, size and
+    /// number tell, also on file systems of other machines, which report nothing.
+    [[nodiscard]] bool wait(int timeout_ms);
+
+  private:
+    struct Stamp {
+        long long seconds = 0;
+        long long nanoseconds = 0;
+        long long bytes = -1;  ///< -1: there is no file
+        unsigned long long number = 0;
+
+        friend bool operator==(const Stamp&, const Stamp&) = default;
     };
+    [[nodiscard]] Stamp stamp() const;
 
-    /// Calls `change` under the lock, and wakes who waits.
-    template <class Change>
-    void update(const Change& change);
-    void work();
-    void load();
-    void forget_film();
-    [[nodiscard]] OnProgress progress();
-    void publish(Json film);
-    void fail(const std::vector<Problem>& problems);
-    void draw(std::int64_t k);
-    void read_curves();
-    [[nodiscard]] bool is_stale() const;
-    [[nodiscard]] std::optional<std::int64_t> next_frame() const;
-    [[nodiscard]] bool is_awaited(std::int64_t k) const { return waiting_.contains({film_number_, k}); }
-    void keep(std::int64_t k, Picture picture);
-    [[nodiscard]] std::int64_t distance(std::int64_t k) const;
-
-    [[nodiscard]] Response state_after(std::int64_t version);
-    [[nodiscard]] Response frame(std::int64_t k, std::int64_t film);
-    [[nodiscard]] Response curves(std::int64_t film);
-    [[nodiscard]] Response change_number(const Json& body);
-    [[nodiscard]] Response write_file();
-
-    WatchDef def_;
-    std::optional<Film> shown_;  ///< used by the thread alone
-
-    mutable std::mutex mutex_;
-    std::condition_variable changed_;
-    bool is_ending_ = false;
-    bool is_reload_asked_ = true;
-    std::int64_t version_ = 1;  ///< of all below
-    bool is_busy_ = true;       ///< the scene is being loaded and simulated
-    double progress_ = 0.0;     ///< of that, 0 .. 1
-    Json problems_ = Json::array();
-    Json film_;  ///< the film that is shown; null before the first one
-    std::int64_t film_number_ = 0;
-    std::int64_t frames_ = 0;
-    std::string text_;  ///< of the file as it was loaded last
-    std::vector<SceneNumber> numbers_;
-    NumberChanges changes_;
-    std::int64_t playhead_ = 0;                                     ///< the frame that was asked for last
-    std::multiset<std::pair<std::int64_t, std::int64_t>> waiting_;  ///< film and frame, per request
-    std::map<std::int64_t, Picture> pictures_;
-    std::size_t picture_bytes_ = 0;
-    bool are_curves_wanted_ = false;
-    std::optional<std::string> curves_;
-
-    std::jthread thread_;  ///< the last member: it uses the others
+    std::string path_;
+    Descriptor inotify_;
+    Stamp last_;
 };
 
 }  // namespace corda::serve

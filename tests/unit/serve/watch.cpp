@@ -12,7 +12,6 @@
 #include <nlohmann/json.hpp>
 
 #include "corda/media/defs.hpp"
-#include "corda/serve/file_watch.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"
 #include "support/image_matchers.hpp"
@@ -115,6 +114,26 @@ TEST_F(WatchTest, KeepsTheLastGoodFilmBesideAnError) {
     const Json again = save(kScene);
     EXPECT_TRUE(again["problems"].empty());
     EXPECT_GT(again["film"]["number"], good["film"]["number"]);
+}
+
+TEST_F(WatchTest, TellsWhatIsWrongWithAFileUntilItIsThere) {
+    const std::string path = folder_.path() + "/later.toml";
+    std::vector<std::string> told;
+    Watch watch({.path = path,
+                 .settings = {},
+                 .longest_side_px = 160,
+                 .film = {},
+                 .on_problems = [&](const std::vector<Problem>& problems) {
+                     for (const Problem& problem : problems) told.push_back(problem.text());
+                 }});
+    std::int64_t version = 0;
+    EXPECT_THAT(next_state(watch, version)["problems"].dump(),
+                AllOf(HasSubstr("cannot read the scene file"), Not(HasSubstr(path))));
+    test::write_file(path, kScene);
+    watch.reload();
+    EXPECT_EQ(next_state(watch, version)["film"]["frames"], 30);
+    EXPECT_THAT(told, testing::ElementsAre(AllOf(testing::StartsWith(path + ": cannot read the scene file"),
+                                                 HasSubstr("give the path of a TOML file"))));
 }
 
 TEST_F(WatchTest, ASaveInterruptsTheWork) {
