@@ -119,12 +119,10 @@ struct RequestedFrames {
 /// Reads "FIRST:END", either of which may be left out; std::nullopt for any other text.
 [[nodiscard]] std::optional<RequestedFrames> parse_frames(std::string_view text);
 
-/// Shows how far the simulation of a film is once it takes more than a second, and ends it by a corda::Error
-/// if a signal asks for that. `console` must outlive it.
-[[nodiscard]] OnProgress show_progress(const Console& console, const std::string& what);
-
-/// Reports the methods that `auto` chose and their error estimates.
-void report_plan(const Console& console, const Film& film);
+/// Simulates a scene, shows how far that is once it takes more than a second, and reports the methods that
+/// `auto` chose and their error estimates. `what` is done, in words of progress.
+[[nodiscard]] Film make_film(const Console& console, const Scene& scene, FilmDef def,
+                             const std::string& what);
 /// Warns of plots, and of names of curves, that have no room.
 void warn_of_room(const Console& console, const Film& film);
 /// Warns if a method that the scene names took one of several ways. To be called when the motion is known.

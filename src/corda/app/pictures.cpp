@@ -247,13 +247,11 @@ ExitCode draw(const Console& console, const Request& request, const Scene& cell,
               const std::vector<Picture>& pictures) {
     const auto& [command, options, scene, times, film_times_s] = request;
     FilmDef film_def = options.film;
-    film_def.on_progress = show_progress(console, "simulate");
     film_def.stills_s = times_of(times);
     film_def.stills_shutter = def.shutter;
     for (const double time_s : film_times_s)
         if (time_s <= scene.world.duration_s) film_def.stills_s.push_back(time_s);
-    const Film film(cell, film_def);
-    report_plan(console, film);
+    const Film film = make_film(console, cell, film_def, "simulate");
     console.detail(fmt::format("{}: {}", scene.name, system_text(film.system())));
     warn_of_room(console, film);
     std::vector<double> empty_s;

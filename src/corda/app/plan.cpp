@@ -90,10 +90,7 @@ void report_in_words(const Console& console, const Film& film, const std::vector
 }
 
 ExitCode plan(const Console& console, const PlanOptions& options) {
-    FilmDef def;
-    def.on_progress = show_progress(console, "plan");
-    Film film(load(console, options.scene).scene, def);
-    report_plan(console, film);
+    const Film film = make_film(console, load(console, options.scene).scene, {}, "plan");
     const CameraDef& camera = film.camera();
     if (options.toml) {
         const std::string toml = frozen_toml(film);

@@ -12,6 +12,9 @@
 
 namespace corda::app {
 
+namespace {
+
+/// Shows how far the simulation of a film is once it takes more than a second.
 OnProgress show_progress(const Console& console, const std::string& what) {
     constexpr double kSilentSeconds = 1.0;
     const double start_s = now_s();
@@ -23,8 +26,6 @@ OnProgress show_progress(const Console& console, const std::string& what) {
         return true;
     };
 }
-
-namespace {
 
 /// Reports the bodies for which `auto` has no error estimate.
 void warn_of_no_estimate(const Console& console, const Film& film) {
@@ -72,9 +73,11 @@ void warn_of_horizon(const Console& console, const Film& film) {
 
 }  // namespace
 
-void report_plan(const Console& console, const Film& film) {
+Film make_film(const Console& console, const Scene& scene, FilmDef def, const std::string& what) {
+    def.on_progress = show_progress(console, what);
+    Film film(scene, def);
     for (const std::string& note : film.plan().notes) console.warning(note);
-    if (!std::holds_alternative<AutoDef>(film.scene().solver)) return;
+    if (!std::holds_alternative<AutoDef>(film.scene().solver)) return film;
     if (const auto estimate = error_estimate_text(film)) {
         console.info(fmt::format("auto: {}; error estimate {}, from tighter runs",
                                  plan_text(film.system(), film.plan()), *estimate));
@@ -82,6 +85,7 @@ void report_plan(const Console& console, const Film& film) {
     warn_of_no_estimate(console, film);
     warn_of_still_nets(console, film);
     warn_of_horizon(console, film);
+    return film;
 }
 
 void warn_of_room(const Console& console, const Film& film) {

@@ -190,13 +190,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
         check_adjacent_pictures(video, options.output, output.first(), output.end());
     report_format(console, scene, output);
 
-    OnProgress on_progress = show_progress(console, "simulate");
-    FilmDef film_def = options.film;
-    film_def.on_progress = [&](std::int64_t done, std::int64_t all) {
-        return !on_progress || on_progress(done, all);
-    };
-    const Film film(scene, film_def);
-    report_plan(console, film);
+    const Film film = make_film(console, scene, options.film, "simulate");
     const std::int64_t count = output.end() - output.first();
     console.info(
         fmt::format("{}: {}, method {}; {} of {}x{} at {} per second{}", scene.name,
@@ -211,7 +205,6 @@ ExitCode render(const Console& console, const RenderOptions& options) {
 
     const GlInfo gl = film.gl();
     report_gl(console, gl);
-    on_progress = {};  // from now on, simulation shows as frames that are drawn
     std::optional<Progress> progress(std::in_place, console, "render", count);
     const Rendered rendered = render_video(film, output, [&](std::int64_t done, std::int64_t total) {
         progress->update(total > 0 ? done * count / total : done);

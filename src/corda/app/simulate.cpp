@@ -245,16 +245,11 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     const Scene scene = load(console, options.scene).scene;
     const bool to_file = !options.output.empty() && !to_stdout;
     if (to_file) check_output(options.output, options.scene.path, options.force, OutputKind::kStream);
-    OnProgress on_progress = show_progress(console, "plan");
     FilmDef def;
-    def.on_progress = [&](std::int64_t done, std::int64_t all) {
-        return !on_progress || on_progress(done, all);
-    };
     def.readings = {.velocities = options.columns.velocities || options.columns.energy,
                     .tensions = options.columns.tensions,
                     .unknown_tensions = options.columns.tensions};
-    Film film(scene, def);
-    report_plan(console, film);
+    const Film film = make_film(console, scene, def, "plan");
     console.info(fmt::format("{}: {}, method {}", film.scene().name, system_text(film.system()),
                              method_names(film.plan())));
     if (options.dry_run) {
@@ -263,7 +258,6 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     }
 
     set_interruption_message(kSomethingWritten);
-    on_progress = {};
     write_output(console, film, options);
     console.info(
         fmt::format("{}; largest strain {:.3g}", cost_text(film), film.diagnostics().largest.strain));
