@@ -60,6 +60,7 @@ def _draw(distribution, component, random, key):
         return min(max(_rounded(float(_DECIMAL.exp(power))), first), second)
     if distribution.shape == "integer":
         return int(first + math.floor((second - first + 1.0) * random.uniform()))
+    assert distribution.shape == "normal", distribution.shape
     for _ in range(_MAX_TRIES):
         value = _rounded(first + second * random.normal())
         if distribution.min[component] <= value <= distribution.max[component]:

@@ -10,7 +10,8 @@
 namespace corda::sim {
 namespace {
 
-/// One row per force. A new force needs nothing else but its field of WorldDef and its key.
+/// One row per force that does not change with time. A new one needs nothing else but its field of WorldDef
+/// and its key.
 constexpr ForceKind kForces[] = {
     // Gravity: the same acceleration for every mass.
     {.term =
