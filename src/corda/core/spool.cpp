@@ -9,6 +9,7 @@
 #include <cstring>
 #include <string>
 
+#include "corda/core/cancel.hpp"
 #include "corda/core/text.hpp"
 
 namespace corda {
@@ -19,11 +20,11 @@ std::string temporary_folder() {
     return chosen != nullptr && *chosen != '\0' ? chosen : "/var/tmp";
 }
 
-[[noreturn]] void fail(std::size_t bytes, int error_number) {
+[[noreturn]] void fail_open(std::size_t bytes, int error_number) {
     throw_error(
         ExitCode::kIo,
-        "a motion of {:.3g} GiB does not fit into a temporary file in '{}': {}; free some space there, "
-        "or set TMPDIR to a folder that has it",
+        "a motion of {:.3g} GiB has no temporary file in '{}': {}; free some space there, or set TMPDIR "
+        "to a folder that has it",
         static_cast<double>(bytes) / static_cast<double>(1U << 30U), temporary_folder(),
         std::strerror(error_number));
 }
@@ -31,10 +32,14 @@ std::string temporary_folder() {
 Descriptor open_nameless(std::size_t bytes) {
     std::string path = temporary_folder() + "/corda.XXXXXX";
     Descriptor file(::mkostemp(path.data(), O_CLOEXEC));
-    if (!file) fail(bytes, errno);
+    if (!file) fail_open(bytes, errno);
     ::unlink(path.c_str());
-    if (const int error = ::posix_fallocate(file.get(), 0, static_cast<off_t>(bytes)); error != 0)
-        fail(bytes, error);
+    int error = EINTR;
+    while (error == EINTR) {
+        check_cancelled();
+        error = ::posix_fallocate(file.get(), 0, static_cast<off_t>(bytes));
+    }
+    if (error != 0) fail_open(bytes, error);
     return file;
 }
 
@@ -47,7 +52,8 @@ void transfer_all(std::size_t offset, std::span<Byte> bytes, const Transfer& tra
         if (count > 0)
             done += static_cast<std::size_t>(count);
         else if (count == 0 || errno != EINTR)
-            fail(offset + bytes.size(), count == 0 ? EIO : errno);
+            throw_error(ExitCode::kIo, "the temporary file of a motion in '{}' cannot be read or written: {}",
+                        temporary_folder(), std::strerror(count == 0 ? EIO : errno));
     }
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "corda/core/cancel.hpp"
 #include "corda/core/text.hpp"
 #include "corda/film/draw.hpp"
 #include "corda/film/live_plots.hpp"
@@ -30,6 +31,8 @@ Film::Film(const Scene& scene, const FilmDef& def) {
         for (const double time_s : def.stills_s)
             record.times_s.push_back(*film::motion_time_s(scene, time_s));
         auto motion = film::simulate(scene, record);
+        const auto all = static_cast<std::int64_t>(motion->timeline->size());
+        const CancelScope looking([&] { report_progress(def.on_progress, all, all); });
         film::Look look = film::look_at(scene, *motion);
         impl_ = std::make_shared<Impl>(Impl{gl, std::move(motion), std::move(look)});
     } catch (const Refusal& refusal) {
@@ -152,8 +155,9 @@ GlInfo Film::gl() const {
 
 Film Film::with_look(const Scene& scene) const {
     const Scene& own = this->scene();
-    if (!scene.overlay.plots.empty() || scene.style.color_by != own.style.color_by ||
-        scene.style.arrows != own.style.arrows || scene.style.trail_s > own.style.trail_s)
+    if (!scene.overlay.plots.empty() || (scene.overlay.energy && !own.overlay.energy) ||
+        scene.style.color_by != own.style.color_by || scene.style.arrows != own.style.arrows ||
+        scene.style.trail_s > own.style.trail_s)
         throw Error(ExitCode::kInternal, "another look of a film needs what its motion does not have");
     return Film(std::make_shared<Impl>(Impl{impl_->gl, impl_->motion, film::look_at(scene, motion())}));
 }

@@ -123,7 +123,7 @@ class Film {
 
     /// The same motion in pictures of another size, style or overlay, without a plot and without another
     /// simulation. `scene` has the bodies and the world of the film's scene. Throws corda::Error (kInternal)
-    /// for another colouring, other arrows, a longer trail or a plot.
+    /// for another colouring, other arrows, a longer trail, an energy or a plot.
     [[nodiscard]] Film with_look(const Scene& scene) const;
 
     // The values that a film consists of; for this library's own use.

@@ -108,6 +108,7 @@ void Motion::for_each(std::span<const double> times_s,
     std::optional<Simulation> run;
     State state;
     for (const double time_s : times_s) {
+        count_work(system.particle_count());
         const auto index = timeline->find(time_s);
         if (index && *index < recording->size()) {
             recording->read(*index, state);
@@ -139,12 +140,9 @@ Energy Motion::energy_of(const State& state) const {
 }
 
 std::shared_ptr<const Motion> simulate(const Scene& scene, const RecordDef& def) {
-    const auto report_start = [&] {
-        return CancelScope([&] { report_progress(def.on_progress, 0, last_frame_of(scene) + 1); });
-    };
     std::shared_ptr<Motion> motion;
     {
-        const CancelScope starting = report_start();
+        const CancelScope starting([&] { report_progress(def.on_progress, 0, last_frame_of(scene) + 1); });
         motion = std::make_shared<Motion>(system_of(scene), scene.world);
         motion->duration_s = scene.world.duration_s;
         motion->timeline = timeline_of(scene, motion->system, def);
@@ -155,7 +153,8 @@ std::shared_ptr<const Motion> simulate(const Scene& scene, const RecordDef& def)
                                       .with({.velocities = scene.style.trail_s > 0.0}));
     }
     motion->plan = run(*motion, scene, def.on_progress);
-    const CancelScope ending = report_start();
+    const auto all = static_cast<std::int64_t>(motion->timeline->size());
+    const CancelScope ending([&] { report_progress(def.on_progress, all, all); });
     const System& system = motion->system;
     motion->plan.notes = input_notes(scene, system, motion->plan);
     motion->meter.emplace(system, scene.world, motion->methods());

@@ -72,6 +72,13 @@ Damage Canvas::develop(const view::DrawList& list) {
     return renderer_->develop(list);
 }
 
+bool Canvas::is_large() const {
+    constexpr std::size_t kMaxImageBytes = std::size_t{4} * 3840 * 2160;
+    constexpr std::size_t kMaxCapsules = 1'000'000;
+    return list_.capsules.capacity() > kMaxCapsules ||
+           (renderer_ && renderer_->image().size_bytes() > kMaxImageBytes);
+}
+
 void CanvasUse::Delete::operator()(Canvas* canvas) const {
     const gl::SavedContext saved;
     const auto lock = canvas->context().exclusive();
@@ -89,6 +96,7 @@ CanvasUse::CanvasUse(const gl::ContextDef& def) : canvas_(take_idle(def)) {
 }
 
 CanvasUse::~CanvasUse() {
+    if (canvas_->is_large()) return;  // deleted, for its memory
     if (idle.size() == kMaxIdle) idle.erase(idle.begin());
     idle.push_back(std::move(canvas_));
 }

@@ -31,6 +31,8 @@ class Canvas : NonCopyable {
     [[nodiscard]] const gl::ContextDef& def() const { return def_; }
     /// A draw list whose memory is used again.
     [[nodiscard]] view::DrawList& list() { return list_; }
+    /// True if it has taken much memory, for a picture above 4k or for very many capsules.
+    [[nodiscard]] bool is_large() const;
 
   private:
     /// Makes the renderer if there is none of that size, and checks the driver.
@@ -44,8 +46,8 @@ class Canvas : NonCopyable {
 };
 
 /// Lends a canvas of this thread, whose context is current meanwhile; afterwards the previous one is, which
-/// may be the host application's. A thread keeps its canvas for the next use. Uses may nest, each with a
-/// canvas of its own, and a process that was forked makes new ones.
+/// may be the host application's. A thread keeps its canvas for the next use, unless it is large. Uses may
+/// nest, each with a canvas of its own, and a process that was forked makes new ones.
 class CanvasUse : NonCopyable {
   public:
     /// Throws corda::Error (kNoGl).

@@ -150,6 +150,8 @@ void draw(WatchState& state, ShownFilm& shown, std::int64_t k) {
     } catch (const Error& error) {
         if (is_interruption(error.code())) throw;
         picture.error = error.what();
+    } catch (const std::bad_alloc&) {
+        picture.error = "out of memory; a smaller size may help";
     }
     update(state, [&] { shown.pictures.keep(k, std::move(picture)); });
 }
@@ -161,19 +163,21 @@ void show(WatchState& state, const Film& film, const Json& full_px) {
     Json words = {{"name", film.scene().name},
                   {"frames", film.frame_count()},
                   {"fps", static_cast<double>(fps.num) / static_cast<double>(fps.den)},
-                  {"frame_s", film.time_s(1)},
+                  {"frame_s", film.scene().video.scene_rate().interval_s()},
                   {"width", video.width_px},
                   {"height", video.height_px},
                   {"full", full_px},
                   {"plan", plan_lines(film)}};
     std::shared_ptr<ShownFilm> shown;
+    std::int64_t first = 0;
     update(state, [&] {
         const std::int64_t playhead = state.film ? state.film->pictures.playhead() : 0;
         words["number"] = ++state.films;
         shown = state.film = std::make_shared<ShownFilm>(
             ShownFilm{state.films, film, words, {film.frame_count(), state.def.picture_bytes, playhead}});
+        first = shown->pictures.playhead();
     });
-    draw(state, *shown, shown->pictures.playhead());  // before the page asks for it
+    draw(state, *shown, first);  // before the page asks for it
     update(state, [&] {
         state.problems.clear();
         state.is_busy = false;

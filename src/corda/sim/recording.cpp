@@ -8,12 +8,16 @@
 #include <numeric>
 #include <span>
 
+#include "corda/core/cancel.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::sim {
 namespace {
+
+/// Work of writing a state of a body into a file, in updates of a particle (see count_work()).
+constexpr std::size_t kWritesOfState = 20;
 
 constexpr unsigned kDropped = 48;  // low bits of a double that a bin ignores
 constexpr std::size_t kBins = std::size_t{1} << (63U - kDropped);
@@ -158,6 +162,7 @@ void Recording::add_body(const Recording& body, std::size_t first_particle, std:
     wall_s_ += body.wall_s_;
     add_figures(body);
     for (std::size_t i = 0; i < size(); ++i) {
+        count_work(body.particle_count_ + kWritesOfState);
         row_.resize(body.state_size_);
         body.values_.read(i * body.state_size_, row_);
         std::span<const double> from = row_;

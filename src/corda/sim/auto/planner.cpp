@@ -346,14 +346,17 @@ Plan plan_methods(const System& system, const NamedMethods& named, const WorldDe
             report_progress(def.on_progress, static_cast<std::int64_t>(i) * total + done, count * total);
             return true;
         };
+        const auto plan_into = [&](Recording& own) {
+            BodyPlan& made =
+                plan.bodies.emplace_back(named[i] ? record_named(body, world, of_body, *named[i], own)
+                                                  : plan_body(body, world, of_body, own));
+            if (made.reason != PlanReason::kNamed) made.stands_still = why_still(body, own);
+            known.include(own.bounds());
+        };
+        if (count == 1) return plan_into(recording);
         Recording part = recording.for_part(body.particle_count(), body.bars.size());
-        Recording& own = count == 1 ? recording : part;
-        BodyPlan& made =
-            plan.bodies.emplace_back(named[i] ? record_named(body, world, of_body, *named[i], own)
-                                              : plan_body(body, world, of_body, own));
-        if (made.reason != PlanReason::kNamed) made.stands_still = why_still(body, own);
-        known.include(own.bounds());
-        if (count > 1) recording.add_body(own, system.bodies[i].first_particle, system.bodies[i].first_bar);
+        plan_into(part);
+        recording.add_body(part, system.bodies[i].first_particle, system.bodies[i].first_bar);
     });
     sum_up(system, plan);
     return plan;
