@@ -58,7 +58,7 @@ struct RequestedTime {
     std::optional<std::int64_t> frame;  ///< if it was asked for by its number
 };
 
-/// What the command `command` is to draw.
+/// A picture to draw for the command `command`.
 struct Request {
     std::string command;
     PictureOptions options;            ///< with those of the file of `--from` that were left out

@@ -14,6 +14,7 @@
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/film/film.hpp"
+#include "corda/film/motion.hpp"
 #include "corda/film/plan_text.hpp"
 #include "interrupt.hpp"
 
@@ -110,7 +111,8 @@ void add_figures(const Figures& figures, CsvLine& line) {
     line.add(figures.loads ? figures.loads->largest_tension_n : none);
 }
 
-void add_row(const Film& film, const State& state, const Columns& columns, CsvLine& line) {
+void add_row(const Film& film, const State& state, const Figures& figures, const Columns& columns,
+             CsvLine& line) {
     const System& system = film.system();
     const Vec2 origin_m = system.origin_m;
     line.add(state.time_s);
@@ -129,11 +131,10 @@ void add_row(const Film& film, const State& state, const Columns& columns, CsvLi
     }
     if (columns.energy) {
         const Energy energy = film.energy_of(state);
-        for (const double value_j :
-             {film.figures_at(state.time_s).energy_change_j, energy.kinetic_j, energy.potential_j()})
+        for (const double value_j : {figures.energy_change_j, energy.kinetic_j, energy.potential_j()})
             line.add(value_j);
     }
-    if (columns.diagnostics) add_figures(film.figures_at(state.time_s), line);
+    if (columns.diagnostics) add_figures(figures, line);
 }
 
 nlohmann::json report(const Film& film) {
@@ -167,11 +168,12 @@ void write_states(const Console& console, const Film& film, const SimulateOption
     CsvLine line(options.style);
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
         check_cancelled();
-        const State state = film.state(k);
-        if (csv != nullptr) {
-            add_row(film, state, options.columns, line);
+        const double time_s = film.time_s(k);
+        film.motion().for_each({&time_s, 1}, [&](const State& state, const Figures& figures) {
+            if (csv == nullptr) return;
+            add_row(film, state, figures, options.columns, line);
             csv->write(line.end());
-        }
+        });
         progress.update(k + 1);
     }
 }

@@ -21,7 +21,7 @@ ExitCode watch(const Console& console, const WatchOptions& options) {
     serve::WatchDef def = options.watch;
     def.path = options.scene.path;
     def.settings = options.scene.settings;
-    // The page shows them too, but whoever has misspelt the path looks here.
+    // The page shows them too, but a user who has misspelt the path looks at the terminal.
     def.on_problems = [&console](const std::vector<Problem>& problems) {
         for (const Problem& problem : problems) console.error(problem.text());
     };

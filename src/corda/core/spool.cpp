@@ -52,8 +52,7 @@ void transfer_all(std::size_t offset, std::span<Byte> bytes, const Transfer& tra
         if (count > 0)
             done += static_cast<std::size_t>(count);
         else if (count == 0 || errno != EINTR)
-            throw_error(ExitCode::kIo, "the temporary file of a motion in '{}' cannot be read or written: {}",
-                        temporary_folder(), std::strerror(count == 0 ? EIO : errno));
+            fail_file("use the temporary file of a motion in", temporary_folder(), count == 0 ? EIO : errno);
     }
 }
 

@@ -198,12 +198,7 @@ std::vector<double> sampled_s(const Scene& scene, const Motion& motion) {
     const FrameRate fps = scene.video.scene_rate();
     const Timeline timeline(fps, fps.last_frame_within(scene.world.duration_s),
                             plot_times_s(scene, motion.system));
-    const std::size_t stride = timeline.size() / kMaxSamples + 1;
-    const double end_s = motion.end_s();
-    std::vector<double> times_s;
-    for (std::size_t i = 0; i < timeline.size() && timeline.time_s(i) <= end_s; i += stride)
-        times_s.push_back(timeline.time_s(i));
-    return times_s;
+    return motion.times_of(timeline, timeline.size() / kMaxSamples + 1);
 }
 
 }  // namespace

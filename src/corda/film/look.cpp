@@ -25,15 +25,9 @@ view::Overlay overlay_of(const Scene& scene, const view::OverlayData& data = {})
                               video.scene_rate().interval_s(), data);
 }
 
-/// The frame times up to the end of a motion.
-std::vector<double> frame_times_s(const Scene& scene, const Motion& motion) {
-    const FrameRate fps = scene.video.scene_rate();
-    const std::int64_t last = last_frame_of(scene);
-    const double end_s = motion.end_s();
-    std::vector<double> times_s;
-    for (std::int64_t k = 0; k <= last && (k == 0 || fps.time_s(k) <= end_s); ++k)
-        times_s.push_back(fps.time_s(k));
-    return times_s;
+/// Every `stride`-th frame time up to the end of a motion.
+std::vector<double> frame_times_s(const Scene& scene, const Motion& motion, std::size_t stride = 1) {
+    return motion.times_of({scene.video.scene_rate(), last_frame_of(scene)}, stride);
 }
 
 view::TrailPoint trail_point(const State& state, std::size_t i) {
@@ -51,12 +45,8 @@ Paths paths_of(const Scene& scene, const Motion& motion) {
                 std::max<std::int64_t>(1, stride),
                 {}};
     if (paths.particles.empty()) return paths;
-    const std::vector<double> frames_s = frame_times_s(scene, motion);
-    std::vector<double> times_s;
-    for (std::size_t k = 0; k < frames_s.size(); k += static_cast<std::size_t>(paths.stride))
-        times_s.push_back(frames_s[k]);
+    const std::vector<double> times_s = frame_times_s(scene, motion, static_cast<std::size_t>(paths.stride));
     motion.for_each(times_s, [&](const State& state, const Figures& /*figures*/) {
-        check_cancelled();
         for (const std::size_t i : paths.particles) paths.points.push_back(trail_point(state, i));
     });
     return paths;
@@ -101,12 +91,7 @@ view::ArrowExtents arrow_extents(const Scene& scene, const Motion& motion) {
                                   std::min(video.width_px, video.height_px));
     const std::vector<double> instants_s = arrow_times_s(scene);
     const Timeline timeline(video.scene_rate(), last_frame_of(scene), instants_s);
-    const double end_s = motion.end_s();
-    std::vector<double> times_s;
-    for (std::size_t i = 0; i < timeline.size() && timeline.time_s(i) <= end_s; ++i)
-        times_s.push_back(timeline.time_s(i));
-    motion.for_each(times_s, [&](const State& state, const Figures& /*figures*/) {
-        check_cancelled();
+    motion.for_each(motion.times_of(timeline), [&](const State& state, const Figures& /*figures*/) {
         extents.include(arrows.of(state),
                         std::binary_search(instants_s.begin(), instants_s.end(), state.time_s));
     });

@@ -97,6 +97,14 @@ double Motion::end_s() const {
     return diverges() && states > 0 ? timeline->time_s(states - 1) : duration_s;
 }
 
+std::vector<double> Motion::times_of(const Timeline& times, std::size_t stride) const {
+    const double until_s = end_s();
+    std::vector<double> times_s;
+    for (std::size_t i = 0; i < times.size() && times.time_s(i) <= until_s; i += stride)
+        times_s.push_back(times.time_s(i));
+    return times_s;
+}
+
 std::vector<MethodDef> Motion::methods() const {
     std::vector<MethodDef> methods;
     for (const BodyPlan& body : plan.bodies) methods.push_back(body.method);

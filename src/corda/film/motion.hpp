@@ -33,6 +33,8 @@ struct Motion : NonCopyable {
     [[nodiscard]] bool diverges() const { return recording->size() < timeline->size(); }
     /// The end: that of the scene, or the last recorded time if the run diverges.
     [[nodiscard]] double end_s() const;
+    /// Every `stride`-th time of a timeline up to the end.
+    [[nodiscard]] std::vector<double> times_of(const Timeline& times, std::size_t stride = 1) const;
     /// One per body, with every default filled in.
     [[nodiscard]] std::vector<MethodDef> methods() const;
 

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is said of a cause.
+/// The words for a cause.
 struct Words {
     const char* group;
     const char* own;
@@ -44,7 +44,7 @@ constexpr std::array kCauseWords{
     Words{"no scene asks for it", "it has no record of how it was made, and --update --force removes it"},
 };
 
-/// Joins what is not empty.
+/// Joins the texts that are not empty.
 std::string joined(const std::string& first, const std::string& second) {
     return first + (first.empty() || second.empty() ? "" : "; ") + second;
 }

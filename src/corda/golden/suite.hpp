@@ -48,7 +48,7 @@ struct Checked {
     std::optional<Difference> difference{};  ///< from a reference of the same size
     std::string reference{};                 ///< path that it was compared with last; empty: none
     std::string drawn_path{};                ///< in SuiteDef::new_folder; empty: it was not written
-    Cause cause{};                           ///< of what is not as it was kept
+    Cause cause{};                           ///< of the difference from the reference
     double seconds = 0.0;                    ///< that drawing and comparing took
     bool changed = false;          ///< written or removed by an update, or to be: then it is no failure
     bool selected = true;          ///< see SuiteDef::only; others are not in a result

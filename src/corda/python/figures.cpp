@@ -6,6 +6,7 @@
 #include <corda/core/markup.hpp>
 #include <corda/core/text.hpp>
 #include <corda/film/film.hpp>
+#include <corda/film/motion.hpp>
 #include <corda/film/plan_text.hpp>
 #include <corda/film/tracked_particle.hpp>
 #include <corda/sim/recording.hpp>
@@ -128,31 +129,35 @@ void append_pairs(const std::vector<double>& x, const std::vector<double>& y, st
     for (std::size_t i = 0; i < x.size(); ++i) pairs.insert(pairs.end(), {x[i], y[i]});
 }
 
+void add_row(const Film& film, const State& state, const Figures& figures, Rows& rows) {
+    const System& system = film.system();
+    rows.times_s.push_back(state.time_s);
+    append_pairs(state.x_m, state.y_m, rows.positions_m);
+    append_pairs(state.vx_m_s, state.vy_m_s, rows.velocities_m_s);
+    for (const Body& body : system.bodies) {
+        for (std::size_t i = body.first_bar; i < body.first_bar + body.link_count; ++i) {
+            rows.tensions_n.push_back(sim::kind_of(Quantity::kTension).value(system, body, i, state));
+            rows.strains.push_back(sim::kind_of(Quantity::kStrain).value(system, body, i, state));
+        }
+    }
+    const Energy energy = film.energy_of(state);
+    rows.energies_j.insert(rows.energies_j.end(), {energy.kinetic_j, energy.weight_j, energy.elastic_j});
+    rows.energy_errors.push_back(figures.energy_error.value_or(kUnknown));
+}
+
 Rows read_rows(const Film& film) {
     Rows rows;
-    const System& system = film.system();
-    for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
-        check_cancelled();
-        State state;
-        try {
-            state = film.state(k);
-        } catch (const Error& error) {
-            if (error.code() != ExitCode::kDiverged || k == 0) throw;
-            rows.failure = error.what();
-            break;
+    try {
+        for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
+            check_cancelled();
+            const double time_s = film.time_s(k);
+            film.motion().for_each({&time_s, 1}, [&](const State& state, const Figures& figures) {
+                add_row(film, state, figures, rows);
+            });
         }
-        rows.times_s.push_back(state.time_s);
-        append_pairs(state.x_m, state.y_m, rows.positions_m);
-        append_pairs(state.vx_m_s, state.vy_m_s, rows.velocities_m_s);
-        for (const Body& body : system.bodies) {
-            for (std::size_t i = body.first_bar; i < body.first_bar + body.link_count; ++i) {
-                rows.tensions_n.push_back(sim::kind_of(Quantity::kTension).value(system, body, i, state));
-                rows.strains.push_back(sim::kind_of(Quantity::kStrain).value(system, body, i, state));
-            }
-        }
-        const Energy energy = film.energy_of(state);
-        rows.energies_j.insert(rows.energies_j.end(), {energy.kinetic_j, energy.weight_j, energy.elastic_j});
-        rows.energy_errors.push_back(film.figures_at(state.time_s).energy_error.value_or(kUnknown));
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::kDiverged || rows.times_s.empty()) throw;
+        rows.failure = error.what();
     }
     rows.diagnostics = film.diagnostics();
     return rows;

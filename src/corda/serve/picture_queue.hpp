@@ -18,7 +18,7 @@ struct Picture {
 /// The pictures of a film that are kept, and which one is drawn next. One thread at a time uses it.
 class PictureQueue {
   public:
-    /// For a film of that many frames. `max_bytes`: room for pictures. `playhead`: the frame that is shown.
+    /// `frames`: length of the film. `max_bytes`: room for pictures. `playhead`: the frame that is shown.
     PictureQueue(std::int64_t frames, std::size_t max_bytes, std::int64_t playhead);
 
     [[nodiscard]] std::int64_t frames() const { return frames_; }

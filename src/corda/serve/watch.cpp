@@ -50,7 +50,7 @@ struct ShownFilm {
     std::optional<std::string> curves = {};
 };
 
-/// What the thread of a watch and those of requests share.
+/// State that the thread of a watch shares with the threads of requests.
 struct WatchState {
     explicit WatchState(WatchDef its) : def(std::move(its)) {}
 
@@ -251,7 +251,7 @@ void fail(WatchState& state, const std::vector<Problem>& problems) {
     if (state.def.on_problems) state.def.on_problems(problems);
 }
 
-/// What the thread does next.
+/// The next work of the thread.
 struct Job {
     bool is_end = false;
     bool is_load = false;

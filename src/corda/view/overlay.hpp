@@ -26,7 +26,7 @@ struct Caption {
     std::optional<Energy> energy = {};  ///< shown if its error is not defined; potentials since the start
 };
 
-/// What an overlay shows of a whole motion.
+/// The data of a whole motion that an overlay shows.
 struct OverlayData {
     std::optional<ColorScale> scale = {};  ///< of the legend of colours
     ArrowScale arrows = {};

@@ -55,9 +55,9 @@ void add_trail(std::span<const FadingPoint> points, double radius_px, Color colo
 /// The particles whose paths are drawn, body by body, each once; none without trails.
 [[nodiscard]] std::vector<std::size_t> traced_particles(const System& system, const StyleDef& style);
 
-/// What pictures show of a whole motion.
+/// The data of a whole motion that all its pictures show.
 struct WholeMotion {
-    /// Of each particle. They choose the supports; without bounds there are none.
+    /// The bounds of each particle. They choose the supports; without bounds there are none.
     std::span<const MotionBounds> bounds = {};
     /// Colours links by a quantity, whose fields the states must then have.
     std::optional<ColorScale> scale = {};
@@ -84,7 +84,7 @@ struct BodyView {
     std::vector<Ball> balls = {};
 };
 
-/// What all pictures of a scene have in common: its content, colours and sizes. Positions come with a state.
+/// The content, colours and sizes of all pictures of a scene. Positions come with a state.
 ///
 /// From back to front: trails; imaginary bars; each body, its links and then its balls; real bars, markers of
 /// free particles; arrows; supports, markers of pinned particles.

@@ -36,7 +36,7 @@ struct Trajectory {
     bool has_leapt = false;
 };
 
-/// What the trajectories of a system share: the equations of motion, the composition, and memory.
+/// The common data of the trajectories of a system: the equations of motion, the composition, and memory.
 struct RattleModel {
     const Composition& composition;
     double guard = 0.0;  ///< see RattleDef
