@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "corda/core/cancel.hpp"
+#include "corda/film/draw.hpp"
 
 namespace corda::python {
 namespace {
@@ -28,31 +29,29 @@ Dimensions particle_pairs(const Film& film) {
 
 constexpr std::array<Label, 7> kLabels{{
     {"times", false, [](const Film&) { return Dimensions(); },
-     [](const Film&, std::int64_t, const State& state, std::string& data) {
-         append(std::array{state.time_s}, data);
-     }},
+     [](const Film&, const State& state, std::string& data) { append(std::array{state.time_s}, data); }},
     {"positions", false, &particle_pairs,
-     [](const Film& film, std::int64_t, const State& state, std::string& data) {
+     [](const Film& film, const State& state, std::string& data) {
          append_pairs(state.x_m, state.y_m, film.system().origin_m, data);
      }},
     {"velocities", false, &particle_pairs,
-     [](const Film&, std::int64_t, const State& state, std::string& data) {
+     [](const Film&, const State& state, std::string& data) {
          append_pairs(state.vx_m_s, state.vy_m_s, {}, data);
      }},
     {"tensions", false,
      [](const Film& film) { return Dimensions{static_cast<std::int64_t>(film.system().link_count())}; },
-     [](const Film& film, std::int64_t, const State& state, std::string& data) {
+     [](const Film& film, const State& state, std::string& data) {
          for (const Body& body : film.system().bodies)
              append(std::span(state.tension_n).subspan(body.first_bar, body.link_count), data);
      }},
     {"energy", false, [](const Film&) { return Dimensions{3}; },
-     [](const Film& film, std::int64_t, const State& state, std::string& data) {
+     [](const Film& film, const State& state, std::string& data) {
          const Energy energy = film.energy_of(state);
          const double potential_j = energy.potential_j();
          append(std::array{energy.kinetic_j, potential_j, energy.kinetic_j + potential_j}, data);
      }},
     {"pixels", false, &particle_pairs,
-     [](const Film& film, std::int64_t, const State& state, std::string& data) {
+     [](const Film& film, const State& state, std::string& data) {
          const Vec2 origin_m = film.system().origin_m;
          std::vector<Vec2> points_m;
          for (std::size_t i = 0; i < state.x_m.size(); ++i)
@@ -64,8 +63,8 @@ constexpr std::array<Label, 7> kLabels{{
      [](const Film& film) {
          return Dimensions{film.scene().video.height_px, film.scene().video.width_px};
      },
-     [](const Film& film, std::int64_t k, const State&, std::string& data) {
-         const std::vector<std::uint8_t> mask = film.mask(k);
+     [](const Film& film, const State& state, std::string& data) {
+         const std::vector<std::uint8_t> mask = film::mask(film.look(), state);
          data.append(mask.begin(), mask.end());
      }},
 }};
@@ -90,7 +89,7 @@ std::vector<Array> read_labels(const Film& film, std::span<const Label* const> l
     for (std::int64_t k = 0; k < frames; ++k) {
         check_cancelled();
         const State state = film.state(k);
-        for (std::size_t i = 0; i < labels.size(); ++i) labels[i]->append(film, k, state, arrays[i].data);
+        for (std::size_t i = 0; i < labels.size(); ++i) labels[i]->append(film, state, arrays[i].data);
     }
     return arrays;
 }

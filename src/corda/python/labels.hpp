@@ -23,8 +23,8 @@ struct Label {
     std::string_view name;
     bool is_bytes;
     std::vector<std::int64_t> (*shape)(const Film& film);  ///< of one frame
-    /// Appends the numbers of frame `k`, whose state the film has just read.
-    void (*append)(const Film& film, std::int64_t k, const State& state, std::string& data);
+    /// Appends the numbers of a frame with this state.
+    void (*append)(const Film& film, const State& state, std::string& data);
 };
 
 /// Null for none.
