@@ -16,6 +16,7 @@
 #include "corda/film/film.hpp"
 #include "corda/film/motion.hpp"
 #include "corda/film/plan_text.hpp"
+#include "corda/film/series.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -39,6 +40,16 @@ struct SimulateOptions {
     bool force = false;
     bool dry_run = false;
 };
+
+/// The columns at the end of a row.
+std::vector<film::Series> series_of(const Columns& columns) {
+    std::vector<film::Series> all;
+    if (columns.energy) all = {film::kSeries.energy_change, film::kSeries.kinetic, film::kSeries.potential};
+    if (columns.diagnostics)
+        all.insert(all.end(), {film::kSeries.energy_error, film::kSeries.strain, film::kSeries.pin_force,
+                               film::kSeries.largest_tension});
+    return all;
+}
 
 /// How the columns of each body begin: with its label.
 std::vector<std::string> column_prefixes(const System& named) {
@@ -66,11 +77,7 @@ std::string csv_header(const System& system, const Columns& columns, CsvStyle st
         for (const char axis : {'x', 'y'}) line.add(fmt::format("{}v{}{}_m_s", labels[i], axis, i));
     for (std::size_t k = 0; columns.tensions && k < of_links.size(); ++k)
         line.add(fmt::format("{}tension{}_n", of_links[k], k));
-    if (columns.energy)
-        for (const char* const name : {"energy_change_j", "kinetic_j", "potential_j"}) line.add(name);
-    if (columns.diagnostics)
-        for (const char* const name : {"energy_error", "strain", "pin_force_n", "largest_tension_n"})
-            line.add(name);
+    for (const film::Series& one : series_of(columns)) line.add(one.key);
     return std::string(line.end());
 }
 
@@ -102,18 +109,10 @@ std::string columns_text(const System& system) {
     return text;
 }
 
-/// A figure that the method does not have is an empty cell.
-void add_figures(const Figures& figures, CsvLine& line) {
-    const double none = std::nan("");
-    line.add(figures.energy_error.value_or(none));
-    line.add(figures.strain);
-    line.add(figures.loads ? figures.loads->pin_force_n : none);
-    line.add(figures.loads ? figures.loads->largest_tension_n : none);
-}
-
-void add_row(const Film& film, const State& state, const Figures& figures, const Columns& columns,
-             CsvLine& line) {
-    const System& system = film.system();
+/// A number that the method does not know is an empty cell.
+void add_row(const film::Instant& instant, const Columns& columns, CsvLine& line) {
+    const State& state = instant.state;
+    const System& system = instant.source.motion.system;
     const Vec2 origin_m = system.origin_m;
     line.add(state.time_s);
     for (std::size_t i = 0; i < state.x_m.size(); ++i) {
@@ -129,12 +128,7 @@ void add_row(const Film& film, const State& state, const Figures& figures, const
         for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k)
             line.add(state.tension_n[k]);
     }
-    if (columns.energy) {
-        const Energy energy = film.energy_of(state);
-        for (const double value_j : {figures.energy_change_j, energy.kinetic_j, energy.potential_j()})
-            line.add(value_j);
-    }
-    if (columns.diagnostics) add_figures(figures, line);
+    for (const film::Series& one : series_of(columns)) line.add(one.value(instant));
 }
 
 nlohmann::json report(const Film& film) {
@@ -166,12 +160,13 @@ void write_states(const Console& console, const Film& film, const SimulateOption
     if (csv != nullptr)
         csv->write(csv_header(named_in_files(film.scene(), film.system()), options.columns, options.style));
     CsvLine line(options.style);
+    const film::SeriesSource source(film.motion());
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
         check_cancelled();
         const double time_s = film.time_s(k);
         film.motion().for_each({&time_s, 1}, [&](const State& state, const Figures& figures) {
             if (csv == nullptr) return;
-            add_row(film, state, figures, options.columns, line);
+            add_row({source, state, figures}, options.columns, line);
             csv->write(line.end());
         });
         progress.update(k + 1);
@@ -248,9 +243,10 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     const bool to_file = !options.output.empty() && !to_stdout;
     if (to_file) check_output(options.output, options.scene.path, options.force, OutputKind::kStream);
     FilmDef def;
-    def.readings = {.velocities = options.columns.velocities || options.columns.energy,
+    def.readings = {.velocities = options.columns.velocities,
                     .tensions = options.columns.tensions,
                     .unknown_tensions = options.columns.tensions};
+    for (const film::Series& one : series_of(options.columns)) def.readings = def.readings.with(one.fields);
     const Film film = make_film(console, scene, def, "plan");
     console.info(fmt::format("{}: {}, method {}", film.scene().name, system_text(film.system()),
                              method_names(film.plan())));

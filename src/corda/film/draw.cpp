@@ -10,7 +10,7 @@
 #include "corda/core/text.hpp"
 #include "corda/film/motion_input.hpp"
 #include "corda/film/plan_text.hpp"
-#include "corda/film/tracked_particle.hpp"
+#include "corda/film/series.hpp"
 #include "corda/view/words.hpp"
 
 namespace corda::film {

@@ -1,6 +1,7 @@
 #include "corda/film/live_plots.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -13,7 +14,7 @@
 
 #include "corda/core/timeline.hpp"
 #include "corda/film/motion.hpp"
-#include "corda/film/tracked_particle.hpp"
+#include "corda/film/series.hpp"
 #include "corda/scene/schema.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/system.hpp"
@@ -46,9 +47,6 @@ struct Subject {
         size_m = sim::length(extent_m.x, extent_m.y);
         mass_kg = std::accumulate(of.mass_kg.begin(), of.mass_kg.end(), 0.0);
         turning = tracked_particles(of, of.bodies.size());
-        tips.assign(2, tip_of(of));
-        for (const TrackedParticle& tracked : turning)
-            if (tracked.body < tips.size()) tips[tracked.body] = tracked.particle;
         std::erase_if(turning, [](const TrackedParticle& one) { return !one.pin || !one.is_free_end; });
         turning.resize(std::min(turning.size(), kMaxCurves));
         for (const TrackedParticle& one : turning)
@@ -73,107 +71,91 @@ struct Subject {
     [[nodiscard]] std::string word(std::string_view english) const {
         return view::translated(english, language);
     }
+    [[nodiscard]] PlotData::AxisName axis(const Series& of, double least_extent = 0.0,
+                                          const std::string& symbol = {}) const {
+        return {word(of.word), of.unit, least_extent, symbol};
+    }
 
     const System& system;
     Language language;
     double end_s;
     double size_m = 0.0;
     double mass_kg = 0.0;
+    std::vector<TrackedParticle> turning;  ///< free ends of bodies with one pin
+    std::vector<double> near_m;            ///< distance of each from its pin below which its curves break
+
     [[nodiscard]] bool is_near_pin(std::size_t k, const State& state) const {
         const std::size_t i = turning[k].particle;
         const std::size_t pin = *turning[k].pin;
         return sim::length(state.x_m[i] - state.x_m[pin], state.y_m[i] - state.y_m[pin]) < near_m[k];
     }
-
-    std::vector<TrackedParticle> turning;  ///< free ends of bodies with one pin
-    std::vector<double> near_m;            ///< distance of each from its pin below which its curves break
-    std::vector<std::size_t> tips;         ///< of ropes 0 and 1
 };
 
-/// A state, and what several plots show of it.
-struct Sample {
-    const State& state;
-    const Motion& motion;
-    std::vector<CurvePoint> turns;  ///< see turning_of(); one per particle of Subject::turning; NaN: a gap
-};
-
-/// One kind of plot: the fields that it needs of states, its axes and empty curves, and the values that a
-/// sample adds to the curves: the y of each over time, otherwise x and y.
+/// One kind of plot: its series, and its axes with empty curves. Each curve has its series of `y`; curves of
+/// bodies have the first one.
 struct Kind {
-    StateFields fields;
+    Series x;
+    std::array<Series, 3> y;
     PlotData (*axes)(const Subject& subject) = nullptr;
-    std::vector<CurvePoint> (*values)(const Subject& subject, const Sample& sample) = nullptr;
+    double y_factor = 1.0;  ///< from the unit of the series to that of the axis
 };
 
-constexpr StateFields kVelocities{.velocities = true};
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// In the order of LivePlot.
 constexpr Kind kKinds[] = {
-    {kVelocities,
+    {kSeries.time,
+     {kSeries.kinetic, kSeries.potential, kSeries.total},
      [](const Subject& subject) -> PlotData {
          using Hue = PlotData::Hue;
          const double speed_m_s = subject.size_m / subject.end_s;
-         return {{"t", "s"},
-                 {subject.word("energy"), "J", kStill * subject.mass_kg * speed_m_s * speed_m_s},
+         return {
+             subject.axis(kSeries.time),
+             {subject.word("energy"), kSeries.total.unit, kStill * subject.mass_kg * speed_m_s * speed_m_s},
+             subject.end_s,
+             {{subject.word(kSeries.kinetic.word), Hue::kKinetic},
+              {subject.word(kSeries.potential.word), Hue::kPotential},
+              {subject.word(kSeries.total.word), Hue::kText}}};
+     }},
+    {kSeries.time,
+     {kSeries.angle},
+     [](const Subject& subject) -> PlotData {
+         return {subject.axis(kSeries.time),
+                 {subject.word(kSeries.angle.word), "°", kStill, "φ"},
                  subject.end_s,
-                 {{subject.word("kinetic"), Hue::kKinetic},
-                  {subject.word("potential"), Hue::kPotential},
-                  {subject.word("total"), Hue::kText}}};
-     },
-     [](const Subject&, const Sample& sample) -> std::vector<CurvePoint> {
-         const Energy energy = sample.motion.energy_of(sample.state);
-         const double potential_j = energy.potential_j();
-         return {{.y = energy.kinetic_j}, {.y = potential_j}, {.y = energy.kinetic_j + potential_j}};
-     }},
-    {kVelocities,
-     [](const Subject& subject) -> PlotData {
-         return {{"t", "s"}, {subject.word("angle"), "°", kStill, "φ"}, subject.end_s, subject.curves()};
-     },
-     [](const Subject&, const Sample& sample) {
-         std::vector<CurvePoint> values;
-         for (const CurvePoint& turn : sample.turns) values.push_back({.y = kDegrees * turn.x});
-         return values;
-     }},
-    {kVelocities,
-     [](const Subject& subject) -> PlotData {
-         const double least = kStill / kDegrees;
-         return {{subject.word("angle"), "rad", least, "φ"},
-                 {subject.word("angular velocity"), "rad/s", least / subject.end_s, "ω"},
-                 0.0,
                  subject.curves()};
      },
-     [](const Subject&, const Sample& sample) { return sample.turns; }},
-    {{},
+     kDegrees},
+    {kSeries.angle,
+     {kSeries.angular_velocity},
+     [](const Subject& subject) -> PlotData {
+         const double least = kStill / kDegrees;
+         return {subject.axis(kSeries.angle, least, "φ"),
+                 subject.axis(kSeries.angular_velocity, least / subject.end_s, "ω"), 0.0, subject.curves()};
+     }},
+    {kSeries.time,
+     {kSeries.tip_distance},
      [](const Subject& subject) -> PlotData {
          const std::string name = subject.name_of(0) + " – " + subject.name_of(1);
-         return {{"t", "s"},
-                 {subject.word("distance of the tips"), "m", 0.0, subject.word("distance"), true},
-                 subject.end_s,
-                 {{subject.system.bodies.size() > 2 ? name : ""}}};
-     },
-     [](const Subject& subject, const Sample& sample) -> std::vector<CurvePoint> {
-         const State& state = sample.state;
-         const std::size_t a = subject.tips[0];
-         const std::size_t b = subject.tips[1];
-         return {{.y = sim::length(state.x_m[a] - state.x_m[b], state.y_m[a] - state.y_m[b])}};
+         PlotData data{subject.axis(kSeries.time),
+                       subject.axis(kSeries.tip_distance, 0.0, subject.word("distance")),
+                       subject.end_s,
+                       {{subject.system.bodies.size() > 2 ? name : ""}}};
+         data.y.is_log = true;
+         return data;
      }},
-    {{},
+    {kSeries.time,
+     {kSeries.tip_x, kSeries.tip_y},
      [](const Subject& subject) -> PlotData {
-         const std::size_t tip = tip_of(subject.system);
-         const std::string x = subject.system.bodies.size() > 1
-                                   ? fmt::format(fmt::runtime(subject.word("x of {}")),
-                                                 subject.name_of(body_of(subject.system, tip)))
-                                   : "x";
-         return {{"t", "s"},
-                 {subject.word("position"), "m", kStill * subject.size_m},
+         const std::string x =
+             subject.system.bodies.size() > 1
+                 ? fmt::format(fmt::runtime(subject.word("x of {}")),
+                               subject.name_of(body_of(subject.system, tip_of(subject.system))))
+                 : subject.word(kSeries.tip_x.word);
+         return {subject.axis(kSeries.time),
+                 {subject.word("position"), kSeries.tip_x.unit, kStill * subject.size_m},
                  subject.end_s,
-                 {{x, PlotData::Hue::kX}, {"y", PlotData::Hue::kY}}};
-     },
-     [](const Subject& subject, const Sample& sample) -> std::vector<CurvePoint> {
-         const std::size_t tip = tip_of(subject.system);
-         return {{.y = subject.system.origin_m.x + sample.state.x_m[tip]},
-                 {.y = subject.system.origin_m.y + sample.state.y_m[tip]}};
+                 {{x, PlotData::Hue::kX}, {subject.word(kSeries.tip_y.word), PlotData::Hue::kY}}};
      }},
 };
 
@@ -205,7 +187,8 @@ std::vector<double> sampled_s(const Scene& scene, const Motion& motion) {
 
 StateFields plot_fields(const Scene& scene) {
     StateFields fields{.velocities = scene.overlay.energy};
-    for (const LivePlot plot : scene.overlay.plots) fields = fields.with(kind_of(plot).fields);
+    for (const LivePlot plot : scene.overlay.plots)
+        for (const Series& one : kind_of(plot).y) fields = fields.with(one.fields);
     return fields;
 }
 
@@ -227,22 +210,26 @@ std::vector<PlotData> plots_of(const Scene& scene, const Motion& motion) {
     for (const LivePlot plot : plots) all.push_back(kind_of(plot).axes(subject));
     for (PlotData& data : all) data.language = subject.language;
     const bool has_velocities = plot_fields(scene).velocities;
-    std::vector<CurvePoint> turns;
-    motion.for_each(sampled_s(scene, motion), [&](const State& state, const Figures& /*figures*/) {
-        Sample sample{state, motion, {}};
+    const SeriesSource source(motion);
+    std::vector<CurvePoint> turns;  // see turning_of(); of each body that turns
+    motion.for_each(sampled_s(scene, motion), [&](const State& state, const Figures& figures) {
+        Instant instant(source, state, figures);
         const bool is_first = turns.empty();
         turns.resize(subject.turning.size());
-        for (std::size_t k = 0; has_velocities && k < turns.size(); ++k) {
+        for (std::size_t k = 0; has_velocities && k < turns.size(); ++k)
             turns[k] = turning_of(subject.turning[k], state, is_first ? nullptr : &turns[k]);
-            constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-            sample.turns.push_back(subject.is_near_pin(k, state) ? CurvePoint{.x = kNone, .y = kNone}
-                                                                 : turns[k]);
-        }
         for (std::size_t p = 0; p < plots.size(); ++p) {
-            const std::vector<CurvePoint> values = kind_of(plots[p]).values(subject, sample);
-            for (std::size_t k = 0; k < values.size(); ++k)
-                all[p].curves[k].points.push_back(
-                    {state.time_s, all[p].end_s > 0.0 ? state.time_s : values[k].x, values[k].y});
+            const Kind& kind = kind_of(plots[p]);
+            for (std::size_t k = 0; k < all[p].curves.size(); ++k) {
+                PlotData::Curve& curve = all[p].curves[k];
+                constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
+                if (curve.body)
+                    instant.turning =
+                        subject.is_near_pin(k, state) ? CurvePoint{.x = kGap, .y = kGap} : turns[k];
+                const Series& y = kind.y[curve.body ? 0 : k];
+                curve.points.push_back(
+                    {state.time_s, kind.x.value(instant), kind.y_factor * y.value(instant)});
+            }
         }
     });
     const bool has_relaxation = std::ranges::any_of(motion.plan.bodies, [](const BodyPlan& body) {

@@ -11,7 +11,7 @@
 #include "corda/film/live_plots.hpp"
 #include "corda/film/motion.hpp"
 #include "corda/film/motion_input.hpp"
-#include "corda/film/tracked_particle.hpp"
+#include "corda/film/series.hpp"
 #include "corda/sim/forces/forces.hpp"
 
 namespace corda::film {

@@ -8,7 +8,7 @@
 #include <corda/film/film.hpp>
 #include <corda/film/motion.hpp>
 #include <corda/film/plan_text.hpp>
-#include <corda/film/tracked_particle.hpp>
+#include <corda/film/series.hpp>
 #include <corda/sim/recording.hpp>
 #include <corda/sim/solver.hpp>
 #include <corda/view/colors.hpp>
@@ -18,7 +18,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,7 +28,6 @@
 namespace corda::python {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPrintPpi = 300.0;
 constexpr double kScreenPpi = 96.0;
 constexpr double kPointsPerInch = 72.0;
@@ -129,8 +127,9 @@ void append_pairs(const std::vector<double>& x, const std::vector<double>& y, st
     for (std::size_t i = 0; i < x.size(); ++i) pairs.insert(pairs.end(), {x[i], y[i]});
 }
 
-void add_row(const Film& film, const State& state, const Figures& figures, Rows& rows) {
-    const System& system = film.system();
+void add_row(const film::Instant& instant, Rows& rows) {
+    const State& state = instant.state;
+    const System& system = instant.source.motion.system;
     rows.times_s.push_back(state.time_s);
     append_pairs(state.x_m, state.y_m, rows.positions_m);
     append_pairs(state.vx_m_s, state.vy_m_s, rows.velocities_m_s);
@@ -140,19 +139,20 @@ void add_row(const Film& film, const State& state, const Figures& figures, Rows&
             rows.strains.push_back(sim::kind_of(Quantity::kStrain).value(system, body, i, state));
         }
     }
-    const Energy energy = film.energy_of(state);
-    rows.energies_j.insert(rows.energies_j.end(), {energy.kinetic_j, energy.weight_j, energy.elastic_j});
-    rows.energy_errors.push_back(figures.energy_error.value_or(kUnknown));
+    for (const film::Series& one : {film::kSeries.kinetic, film::kSeries.weight, film::kSeries.elastic})
+        rows.energies_j.push_back(one.value(instant));
+    rows.energy_errors.push_back(film::kSeries.energy_error.value(instant));
 }
 
 Rows read_rows(const Film& film) {
+    const film::SeriesSource source(film.motion());
     Rows rows;
     try {
         for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
             check_cancelled();
             const double time_s = film.time_s(k);
             film.motion().for_each({&time_s, 1}, [&](const State& state, const Figures& figures) {
-                add_row(film, state, figures, rows);
+                add_row({source, state, figures}, rows);
             });
         }
     } catch (const Error& error) {

@@ -6,6 +6,7 @@
 
 #include "corda/core/cancel.hpp"
 #include "corda/film/draw.hpp"
+#include "corda/film/motion.hpp"
 
 namespace corda::python {
 namespace {
@@ -29,42 +30,43 @@ Dimensions particle_pairs(const Film& film) {
 
 constexpr std::array<Label, 7> kLabels{{
     {"times", false, [](const Film&) { return Dimensions(); },
-     [](const Film&, const State& state, std::string& data) { append(std::array{state.time_s}, data); }},
+     [](const Film&, const film::Instant& frame, std::string& data) {
+         append(std::array{frame.state.time_s}, data);
+     }},
     {"positions", false, &particle_pairs,
-     [](const Film& film, const State& state, std::string& data) {
-         append_pairs(state.x_m, state.y_m, film.system().origin_m, data);
+     [](const Film& film, const film::Instant& frame, std::string& data) {
+         append_pairs(frame.state.x_m, frame.state.y_m, film.system().origin_m, data);
      }},
     {"velocities", false, &particle_pairs,
-     [](const Film&, const State& state, std::string& data) {
-         append_pairs(state.vx_m_s, state.vy_m_s, {}, data);
+     [](const Film&, const film::Instant& frame, std::string& data) {
+         append_pairs(frame.state.vx_m_s, frame.state.vy_m_s, {}, data);
      }},
     {"tensions", false,
      [](const Film& film) { return Dimensions{static_cast<std::int64_t>(film.system().link_count())}; },
-     [](const Film& film, const State& state, std::string& data) {
+     [](const Film& film, const film::Instant& frame, std::string& data) {
          for (const Body& body : film.system().bodies)
-             append(std::span(state.tension_n).subspan(body.first_bar, body.link_count), data);
+             append(std::span(frame.state.tension_n).subspan(body.first_bar, body.link_count), data);
      }},
     {"energy", false, [](const Film&) { return Dimensions{3}; },
-     [](const Film& film, const State& state, std::string& data) {
-         const Energy energy = film.energy_of(state);
-         const double potential_j = energy.potential_j();
-         append(std::array{energy.kinetic_j, potential_j, energy.kinetic_j + potential_j}, data);
+     [](const Film& film, const film::Instant& frame, std::string& data) {
+         for (const film::Series& one : {film::kSeries.kinetic, film::kSeries.potential, film::kSeries.total})
+             append(std::array{one.value(frame)}, data);
      }},
     {"pixels", false, &particle_pairs,
-     [](const Film& film, const State& state, std::string& data) {
+     [](const Film& film, const film::Instant& frame, std::string& data) {
          const Vec2 origin_m = film.system().origin_m;
          std::vector<Vec2> points_m;
-         for (std::size_t i = 0; i < state.x_m.size(); ++i)
-             points_m.push_back({origin_m.x + state.x_m[i], origin_m.y + state.y_m[i]});
-         for (const Vec2 pixel : film.to_pixels(points_m, state.time_s))
+         for (std::size_t i = 0; i < frame.state.x_m.size(); ++i)
+             points_m.push_back({origin_m.x + frame.state.x_m[i], origin_m.y + frame.state.y_m[i]});
+         for (const Vec2 pixel : film.to_pixels(points_m, frame.state.time_s))
              append(std::array{pixel.x, pixel.y}, data);
      }},
     {"mask", true,
      [](const Film& film) {
          return Dimensions{film.scene().video.height_px, film.scene().video.width_px};
      },
-     [](const Film& film, const State& state, std::string& data) {
-         const std::vector<std::uint8_t> mask = film::mask(film.look(), state);
+     [](const Film& film, const film::Instant& frame, std::string& data) {
+         const std::vector<std::uint8_t> mask = film::mask(film.look(), frame.state);
          data.append(mask.begin(), mask.end());
      }},
 }};
@@ -86,10 +88,14 @@ std::vector<Array> read_labels(const Film& film, std::span<const Label* const> l
         arrays.push_back({std::string(label->name), label->is_bytes, std::move(shape), {}});
         arrays.back().data.reserve(bytes);
     }
+    const film::SeriesSource source(film.motion());
     for (std::int64_t k = 0; k < frames; ++k) {
         check_cancelled();
-        const State state = film.state(k);
-        for (std::size_t i = 0; i < labels.size(); ++i) labels[i]->append(film, state, arrays[i].data);
+        const double time_s = film.time_s(k);
+        film.motion().for_each({&time_s, 1}, [&](const State& state, const Figures& figures) {
+            const film::Instant frame(source, state, figures);
+            for (std::size_t i = 0; i < labels.size(); ++i) labels[i]->append(film, frame, arrays[i].data);
+        });
     }
     return arrays;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "corda/film/film.hpp"
+#include "corda/film/series.hpp"
 
 namespace corda::python {
 
@@ -23,8 +24,8 @@ struct Label {
     std::string_view name;
     bool is_bytes;
     std::vector<std::int64_t> (*shape)(const Film& film);  ///< of one frame
-    /// Appends the numbers of a frame with this state.
-    void (*append)(const Film& film, const State& state, std::string& data);
+    /// Appends the numbers of a frame.
+    void (*append)(const Film& film, const film::Instant& frame, std::string& data);
 };
 
 /// Null for none.

@@ -1,6 +1,6 @@
 // The films of the samples of a sweep, and what its file is checked against: for corda/sweep.py.
 #include <corda/film/plan_text.hpp>
-#include <corda/film/tracked_particle.hpp>
+#include <corda/film/series.hpp>
 #include <corda/media/format/format.hpp>
 #include <corda/scene/document.hpp>
 #include <corda/scene/schema.hpp>

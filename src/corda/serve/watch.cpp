@@ -27,8 +27,9 @@
 #include "corda/core/cancel.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
+#include "corda/film/motion.hpp"
 #include "corda/film/plan_text.hpp"
-#include "corda/film/tracked_particle.hpp"
+#include "corda/film/series.hpp"
 #include "corda/media/bytes.hpp"
 #include "corda/scene/scene.hpp"
 #include "corda/serve/picture_queue.hpp"
@@ -218,23 +219,21 @@ void load(WatchState& state) {
 void read_curves(WatchState& state, ShownFilm& shown) {
     constexpr std::int64_t kMaxPoints = 1200;
     const Film& film = shown.film;
-    const auto tracked = film::tracked_particles(film.system());
-    const std::int64_t stride = 1 + (film.frame_count() - 1) / kMaxPoints;
-    Json curves = {{"t", Json::array()},
-                   {"angle_deg", Json::array()},
-                   {"kinetic_j", Json::array()},
-                   {"potential_j", Json::array()}};
-    for (std::int64_t k = 0; k < film.frame_count(); k += stride) {
+    const auto tracked = film::tracked_particles(film.system(), 1);
+    const film::SeriesSource source(film.motion());
+    std::vector<double> times_s;
+    for (std::int64_t k = 0; k < film.frame_count(); k += 1 + (film.frame_count() - 1) / kMaxPoints)
+        times_s.push_back(film.time_s(k));
+    Json curves = {{"angle_deg", Json::array()}};
+    film.motion().for_each(times_s, [&](const State& now, const Figures& figures) {
         check_cancelled();
-        const State now = film.state(k);
-        curves["t"].push_back(film.time_s(k));
+        const film::Instant instant(source, now, figures);
         if (!tracked.empty() && tracked.front().pin)
             curves["angle_deg"].push_back(film::turning_of(tracked.front(), now, nullptr).x * 180.0 /
                                           std::numbers::pi);
-        const Energy energy = film.energy_of(now);
-        curves["kinetic_j"].push_back(energy.kinetic_j);
-        curves["potential_j"].push_back(energy.potential_j());
-    }
+        for (const film::Series& one : {film::kSeries.time, film::kSeries.kinetic, film::kSeries.potential})
+            curves[one.key].push_back(one.value(instant));
+    });
     update(state, [&] {
         shown.curves = curves.dump();
         shown.are_curves_wanted = false;

@@ -1,10 +1,11 @@
-#include "corda/film/tracked_particle.hpp"
+#include "corda/film/series.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "corda/core/direction.hpp"
+#include "corda/film/motion.hpp"
 #include "corda/view/scene_view.hpp"
 
 namespace corda::film {
@@ -83,6 +84,27 @@ std::size_t tip_of(const System& system) {
     if (!ends.empty()) return ends.front();
     const std::vector<TrackedParticle> tracked = tracked_particles(system);
     return tracked.empty() ? 0 : tracked.front().particle;
+}
+
+SeriesSource::SeriesSource(const Motion& of) : motion(of), tip(tip_of(of.system)), tips{tip, tip} {
+    for (const TrackedParticle& tracked : tracked_particles(of.system, of.system.bodies.size()))
+        if (tracked.body < tips.size()) tips[tracked.body] = tracked.particle;
+}
+
+Instant::Instant(const SeriesSource& of, const State& at, const Figures& its)
+    : source(of),
+      state(at),
+      figures(its),
+      energy(at.vx_m_s.empty() ? Energy{SeriesTable::kNone, SeriesTable::kNone, SeriesTable::kNone}
+                               : of.motion.energy_of(at)) {}
+
+Vec2 Instant::tip_m() const {
+    return source.motion.system.origin_m + Vec2{state.x_m[source.tip], state.y_m[source.tip]};
+}
+
+double Instant::tip_distance_m() const {
+    const auto [a, b] = source.tips;
+    return sim::length(state.x_m[a] - state.x_m[b], state.y_m[a] - state.y_m[b]);
 }
 
 }  // namespace corda::film

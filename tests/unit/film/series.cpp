@@ -1,9 +1,11 @@
-#include "corda/film/tracked_particle.hpp"
+#include "corda/film/series.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
+#include "corda/film/motion.hpp"
 #include "corda/scene/scene.hpp"
 
 namespace corda::film {
@@ -65,6 +67,34 @@ TEST(TrackedParticle, TurnsByLessThanHalfATurnPastItsPin) {
         EXPECT_GT(after.x, before.x);
         EXPECT_LT(after.x, before.x + std::numbers::pi);
     }
+}
+
+TEST(Series, AreReadFromAStateAndItsFigures) {
+    const Scene scene = parse_scene(
+        "schema = 1\n[world]\nduration = 0.1\n"
+        "[[rope]]\npoints = [[2, 3], [2, 2]]\n[[rope]]\npoints = [[5, 3], [5, 2]]\n",
+        "scene.toml");
+    RecordDef def;
+    def.fields.velocities = true;
+    const auto motion = simulate(scene, def);
+    const SeriesSource source(*motion);
+    State state = motion->at(0.1);
+    state.vx_m_s[1] = 2.0;
+    Figures figures;
+    figures.strain = 0.25;
+    const Instant instant(source, state, figures);
+    EXPECT_EQ(kSeries.time.value(instant), 0.1);
+    EXPECT_EQ(kSeries.strain.value(instant), 0.25);
+    EXPECT_NEAR(kSeries.tip_x.value(instant), 2.0, 1e-12);
+    EXPECT_NEAR(kSeries.tip_y.value(instant), 2.0, 1e-12);
+    EXPECT_NEAR(kSeries.tip_distance.value(instant), 3.0, 1e-12);
+    EXPECT_NEAR(kSeries.kinetic.value(instant), 2.0 * motion->system.mass_kg[1], 1e-12);
+    EXPECT_NEAR(kSeries.total.value(instant), kSeries.kinetic.value(instant), 1e-12);
+    for (const Series& unknown : {kSeries.energy_error, kSeries.pin_force, kSeries.largest_tension})
+        EXPECT_TRUE(std::isnan(unknown.value(instant))) << unknown.key;
+    state.vx_m_s.clear();
+    for (const Series& energy : {kSeries.kinetic, kSeries.weight, kSeries.elastic, kSeries.total})
+        EXPECT_TRUE(std::isnan(energy.value({source, state, figures}))) << energy.key;
 }
 
 }  // namespace
