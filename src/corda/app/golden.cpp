@@ -40,15 +40,15 @@ constexpr int kMaxOnPage = 200;
 /// "a.png: would be written: different: max 3, mean 0.1, share 0.02; world.drag is 1 and was 0".
 std::string line_of(const Checked& picture, bool is_dry_run) {
     std::vector<std::string> parts;
-    if (picture.verdict == Verdict::kDifferent && picture.difference)
+    if (picture.verdict() == Verdict::kDifferent && picture.difference)
         parts.push_back("different: " + figures_text(picture));
-    else if (picture.verdict != Verdict::kPassed)
-        parts.emplace_back(word_of(picture.verdict));
+    else if (picture.verdict() != Verdict::kPassed)
+        parts.emplace_back(word_of(picture.verdict()));
     if (const std::string cause = cause_text(picture).whole; !cause.empty()) parts.push_back(cause);
-    if (picture.failed() && picture.verdict == Verdict::kMissing) parts.emplace_back("--update adds it");
+    if (picture.failed() && picture.verdict() == Verdict::kMissing) parts.emplace_back("--update adds it");
     if (picture.failed() && picture.cause.kind == golden::Cause::Kind::kUnasked)
         parts.emplace_back("--update removes it");
-    const bool is_stale = picture.verdict == Verdict::kStale;
+    const bool is_stale = picture.verdict() == Verdict::kStale;
     const std::string change =
         fmt::format("{}{}: ", is_dry_run ? "would be " : "", is_stale ? "removed" : "written");
     return fmt::format("{}: {}{}", picture.name, picture.changed ? change : "", fmt::join(parts, "; "));
@@ -69,7 +69,7 @@ Shard parse_shard(const std::string& text) {
 void tell(const Console& console, const GoldenOptions& options, const golden::SuiteResult& result) {
     nlohmann::json pictures = nlohmann::json::array();
     for (const Checked& picture : result.pictures) {
-        if (picture.verdict == Verdict::kInvalid)
+        if (picture.verdict() == Verdict::kInvalid)
             console.error(picture.cause.message);
         else if (picture.failed() || picture.changed)
             console.result(line_of(picture, options.def.dry_run));

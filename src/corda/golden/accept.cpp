@@ -74,9 +74,8 @@ std::string problem_of(const NewPicture& one, const std::string& bytes, const Ca
         return fmt::format("it is no picture: {}", error.what());
     }
     if (one.scene_hash != hash_of(scene, picture))
-        return "it is of another scene; " +
-               changes_text(scene_changes(provenance_in(read_png_info(one.path)),
-                                          load_scene(scene.path, scene.settings), def.settings));
+        return "it is of another scene; " + changes_text(scene_changes(provenance_in(read_png_info(one.path)),
+                                                                       scene.drawn(), def.settings));
     const std::string reference = hash_of(picture.reference);
     const bool is_known = reference == one.reference_hash || reference == one.hash;
     return is_known ? "" : fmt::format("'{}' has changed since, or is another one", picture.reference);
@@ -86,8 +85,8 @@ std::string problem_of(const NewPicture& one, const std::string& bytes, const Ca
 Cause cause_of_change(const NewPicture& one, const Case& scene, const Checked& picture, const SuiteDef& def) {
     const auto made = provenance_of_file(one.path);
     const auto kept = provenance_of_file(picture.reference);
-    if (!made || !made->golden || !kept) return {};
-    return cause_of(*kept, *made->golden, load_scene(scene.path, scene.settings), def.settings);
+    if (!made || !made->golden || !kept) return {.kind = Cause::Kind::kUnknown};
+    return cause_of(*kept, *made->golden, scene.drawn(), def.settings);
 }
 
 /// Why no picture was accepted, although none was refused. `left_out`: those that the folders have.
@@ -178,7 +177,6 @@ SuiteResult accept(const SuiteDef& def) {
             picture.changed = hash_of(picture.reference) != one.hash;
             if (picture.changed) {
                 const bool is_missing = one.reference_hash.empty();
-                picture.verdict = is_missing ? Verdict::kMissing : Verdict::kDifferent;
                 picture.cause = is_missing ? Cause{.kind = Cause::Kind::kNoReference}
                                            : cause_of_change(one, *scene, picture, def);
                 files[one.name] = std::move(bytes);

@@ -58,15 +58,9 @@ std::optional<Image> mask_of(const std::string& scene, const GoldenDef& golden) 
 }
 
 Case make_case(const std::string& path, const SuiteDef& def, std::set<std::string>& names) {
-    Case made{.path = path,
-              .settings = def.settings,
-              .scene = load_scene(path, def.settings),
-              .pictures = {},
-              .mask = {}};
+    Case made{.path = path, .scene = load_scene(path, def.settings), .pictures = {}, .mask = {}};
     if (!made.scene.golden) return made;
     made.mask = mask_of(path, *made.scene.golden);
-    made.settings.push_back(
-        fmt::format("video.size=[{}, {}]", made.scene.golden->width_px, made.scene.golden->height_px));
     for (const double at_s : made.scene.golden->at_s) {
         const auto within_s = time_within(at_s, made.scene.world.duration_s);
         if (!within_s)
@@ -141,6 +135,15 @@ std::vector<std::string> stale_ones(const SuiteDef& def, const Suite& suite) {
 
 }  // namespace
 
+Scene Case::drawn() const {
+    Scene sized = scene;
+    VideoDef& video = sized.video;
+    video.width_px = scene.golden->width_px;
+    video.height_px = scene.golden->height_px;
+    sized.settings.push_back(fmt::format("video.size=[{}, {}]", video.width_px, video.height_px));
+    return sized;
+}
+
 Suite load_suite(const SuiteDef& def) {
     Suite suite;
     std::set<std::string> names;
@@ -172,7 +175,6 @@ Suite load_suite(const SuiteDef& def) {
                 suite.invalid.push_back(
                     {.scene = fs::path(file).stem().string(),
                      .name = file,
-                     .verdict = Verdict::kInvalid,
                      .cause = {.kind = Cause::Kind::kInvalidScene, .message = error.what()}});
             }
         }

@@ -15,10 +15,12 @@ inline constexpr const char* kEnding = ".png";
 /// A scene of a suite and its pictures.
 struct Case {
     std::string path;
-    std::vector<Setting> settings;  ///< those of the suite, and the picture size
-    Scene scene;                    ///< with these settings
+    Scene scene;  ///< with the settings of the suite
     std::vector<Checked> pictures;
     std::optional<Image> mask;
+
+    /// The scene in the size of its golden pictures.
+    [[nodiscard]] Scene drawn() const;
 };
 
 /// The files of a suite.

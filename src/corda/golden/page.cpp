@@ -95,7 +95,7 @@ std::string case_html(const Checked& picture) {
         fmt::format("<section id=\"{0}\">\n<h2>{0}</h2>\n<p class=\"cause\">{1}</p>\n",
                     markup_text(picture.name), markup_text(cause_text(picture).whole_or_group()));
     if (picture.difference) html += fmt::format("<p class=\"figures\">{}</p>\n", figures_text(picture));
-    const bool is_shown = picture.drawn || picture.verdict == Verdict::kStale;
+    const bool is_shown = picture.drawn || picture.verdict() == Verdict::kStale;
     std::optional<Image> reference;
     try {
         if (is_shown && !picture.reference.empty()) reference = read_png(picture.reference);

@@ -25,10 +25,11 @@ namespace corda::golden {
 [[nodiscard]] std::vector<KeyChange> scene_changes(const Provenance& kept, const Scene& now,
                                                    const std::vector<Setting>& settings = {});
 
-/// Why a picture failed, or why an update writes it. cause_text() has the words, in this order.
+/// Why a picture failed, or why an update writes it. A table in reports.cpp has the verdicts and the words.
 struct Cause {
     enum class Kind {
-        kNone,  ///< it passed, or nothing is known beyond the verdict
+        kNone,     ///< it passed
+        kUnknown,  ///< another picture is accepted, and no record says why it differs
         kInvalidScene,
         kNoReference,
         kReferenceIsNoPng,

@@ -15,8 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The words for a cause.
+/// The verdict and the words for a cause.
 struct Words {
+    Verdict verdict;
     const char* group;
     const char* own;
     bool is_alone = false;  ///< the own words say it all, and do not follow those of the group
@@ -24,25 +25,31 @@ struct Words {
 
 /// By Cause::Kind.
 constexpr std::array kCauseWords{
-    Words{"", ""},
-    Words{"invalid scene", "{message}", true},
-    Words{"there is no reference", "", true},
-    Words{"is no PNG, and --update --force replaces it",
+    Words{Verdict::kPassed, "", ""},
+    Words{Verdict::kDifferent, "", ""},
+    Words{Verdict::kInvalid, "invalid scene", "{message}", true},
+    Words{Verdict::kMissing, "there is no reference", "", true},
+    Words{Verdict::kDifferent, "is no PNG, and --update --force replaces it",
           "the kept picture is no PNG, and --update --force replaces it ({message})", true},
-    Words{"is damaged, and --update replaces it",
+    Words{Verdict::kDifferent, "is damaged, and --update replaces it",
           "the kept picture is damaged, and --update replaces it ({message})", true},
-    Words{"{stored} pixels, now {now}", ""},
-    Words{"pixels differ; the reference does not say how it was made", ""},
-    Words{"{changed}", "{chosen}"},
-    Words{"another solver or camera is chosen", "same scene, {chosen}", true},
-    Words{"same scene, drawn by another version of Corda: {stored}, now {now}", ""},
-    Words{"same scene, drawn by another OpenGL: {stored}, now {now}", ""},
-    Words{"same scene, version and OpenGL, but pixels differ", ""},
-    Words{"", "the same pixels, without a record of how they were made", true},
-    Words{"no scene asks for it", ""},
-    Words{"no scene asks for it", "it is no PNG, and --update --force removes it"},
-    Words{"no scene asks for it", "it has no record of how it was made, and --update --force removes it"},
+    Words{Verdict::kDifferent, "{stored} pixels, now {now}", ""},
+    Words{Verdict::kDifferent, "pixels differ; the reference does not say how it was made", ""},
+    Words{Verdict::kDifferent, "{changed}", "{chosen}"},
+    Words{Verdict::kDifferent, "another solver or camera is chosen", "same scene, {chosen}", true},
+    Words{Verdict::kDifferent, "same scene, drawn by another version of Corda: {stored}, now {now}", ""},
+    Words{Verdict::kDifferent, "same scene, drawn by another OpenGL: {stored}, now {now}", ""},
+    Words{Verdict::kDifferent, "same scene, version and OpenGL, but pixels differ", ""},
+    Words{Verdict::kPassed, "", "the same pixels, without a record of how they were made", true},
+    Words{Verdict::kStale, "no scene asks for it", ""},
+    Words{Verdict::kStale, "no scene asks for it", "it is no PNG, and --update --force removes it"},
+    Words{Verdict::kStale, "no scene asks for it",
+          "it has no record of how it was made, and --update --force removes it"},
 };
+
+const Words& words_of(const Cause& cause) {
+    return kCauseWords.at(static_cast<std::size_t>(cause.kind));
+}
 
 /// Joins the texts that are not empty.
 std::string joined(const std::string& first, const std::string& second) {
@@ -61,10 +68,10 @@ std::string case_xml(const Checked& picture) {
                property("share", difference.share) + "      </properties>\n";
     }
     if (picture.failed())
-        xml +=
-            fmt::format("      <{} type=\"{}\" message=\"{}\"/>\n",
-                        picture.verdict == Verdict::kInvalid ? "error" : "failure", word_of(picture.verdict),
-                        markup_text(joined(figures_text(picture), cause_text(picture).whole_or_group())));
+        xml += fmt::format("      <{} type=\"{}\" message=\"{}\"/>\n",
+                           picture.verdict() == Verdict::kInvalid ? "error" : "failure",
+                           word_of(picture.verdict()),
+                           markup_text(joined(figures_text(picture), cause_text(picture).whole_or_group())));
     return xml + "    </testcase>\n";
 }
 
@@ -75,7 +82,7 @@ std::string counts_xml(Iterator first, Iterator last) {
     int errors = 0;
     double seconds = 0.0;
     for (Iterator picture = first; picture != last; ++picture) {
-        if (picture->failed()) ++(picture->verdict == Verdict::kInvalid ? errors : failures);
+        if (picture->failed()) ++(picture->verdict() == Verdict::kInvalid ? errors : failures);
         seconds += picture->seconds;
     }
     return fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.3f}\"", last - first, failures,
@@ -99,6 +106,10 @@ const char* word_of(Verdict verdict) {
     return kWords.at(static_cast<std::size_t>(verdict));
 }
 
+Verdict Checked::verdict() const {
+    return is_empty ? Verdict::kEmpty : words_of(cause).verdict;
+}
+
 std::string figures_text(const Checked& picture) {
     return picture.difference ? corda::figures_text(*picture.difference) : "";
 }
@@ -111,10 +122,10 @@ CauseText cause_text(const Checked& picture) {
             fmt::arg("now", cause.now), fmt::arg("changed", changes_text(cause.changed)),
             fmt::arg("chosen", cause.chosen.empty() ? "" : "another choice: " + changes_text(cause.chosen)));
     };
-    const Words& words = kCauseWords.at(static_cast<std::size_t>(cause.kind));
+    const Words& words = words_of(cause);
     CauseText text{.group = filled_in(words.group), .own = filled_in(words.own)};
     text.whole = words.is_alone ? text.own : joined(text.group, text.own);
-    if (picture.verdict != Verdict::kEmpty) return text;
+    if (!picture.is_empty) return text;
     constexpr const char* kNothing = "nothing is in view";
     if (text.group.empty()) return {.group = kNothing, .own = "", .whole = kNothing};
     return {text.group, joined(kNothing, text.own), joined(kNothing, text.whole)};
@@ -122,7 +133,7 @@ CauseText cause_text(const Checked& picture) {
 
 std::int64_t SuiteResult::count(Verdict verdict) const {
     return std::ranges::count_if(
-        pictures, [&](const Checked& picture) { return picture.verdict == verdict && !picture.changed; });
+        pictures, [&](const Checked& picture) { return picture.verdict() == verdict && !picture.changed; });
 }
 
 std::int64_t SuiteResult::changed() const {
@@ -150,13 +161,13 @@ nlohmann::json figures_json(const std::optional<Difference>& difference) {
 }
 
 nlohmann::json picture_json(const Checked& picture) {
-    const bool is_stale = picture.verdict == Verdict::kStale;
+    const bool is_stale = picture.verdict() == Verdict::kStale;
     const CauseText cause = cause_text(picture);
     nlohmann::json json = figures_json(picture.difference);
     json.update({{"name", picture.name},
                  {"scene", picture.scene},
                  {"time_s", picture.time_s},
-                 {"result", word_of(picture.verdict)},
+                 {"result", word_of(picture.verdict())},
                  {"cause", cause.whole},
                  {"group", cause.group},
                  {"compared_with", is_stale ? "" : fs::path(picture.reference).filename().string()},
@@ -194,7 +205,7 @@ std::string markdown(const SuiteResult& result) {
         if (i == 0 || cause.group != failed[i - 1].second.group)
             text += fmt::format("\n**{}**\n\n| picture | result | difference | cause |\n|---|---|---|---|\n",
                                 cell(cause.group));
-        text += fmt::format("| {} | {} | {} | {} |\n", cell(picture->name), word_of(picture->verdict),
+        text += fmt::format("| {} | {} | {} | {} |\n", cell(picture->name), word_of(picture->verdict()),
                             figures_text(*picture), cell(cause.own));
     }
     if (rows < failed.size()) text += fmt::format("\nand {} more\n", failed.size() - rows);

@@ -25,21 +25,32 @@ namespace fs = std::filesystem;
 /// A thread of its own draws no fewer pictures: the context that it needs takes as long as some of them.
 constexpr std::size_t kMinApart = 8;
 
+/// What the threads of a run share.
+struct Run {
+    const SuiteDef& def;
+    const std::vector<std::string>& references;
+    std::int64_t all;  ///< pictures to draw
+    int threads = usable_cores();
+    TaskQueue queue{};
+    std::mutex mutex{};  ///< of all below
+    std::int64_t done = 0;
+    int kept = 0;   ///< see SuiteDef::most_drawn
+    Files files{};  ///< of an update, or for SuiteDef::new_folder; written when all pictures are drawn
+};
+
 /// A scene that is being drawn.
 struct Job {
-    Case* scene = nullptr;
-    std::optional<Film> film;
+    Case& scene;
+    Film film;
     GoldenRecord made;
-    std::size_t left = 0;  ///< pictures to draw
 };
 
 /// A picture as it compares with one of its references. `settings`: of the suite.
 Checked compared(const Image& drawn, const Job& job, const std::vector<Setting>& settings,
                  const std::string& path, Checked picture) {
-    const Scene& scene = job.film->scene();
-    const Image* const mask = job.scene->mask ? &*job.scene->mask : nullptr;
+    const Scene& scene = job.film.scene();
+    const Image* const mask = job.scene.mask ? &*job.scene.mask : nullptr;
     picture.reference = path;
-    picture.verdict = Verdict::kDifferent;
     Picture reference;
     try {
         reference = read_picture(path);
@@ -59,119 +70,80 @@ Checked compared(const Image& drawn, const Job& job, const std::vector<Setting>&
         return picture;
     }
     picture.difference = difference;
-    if (difference.within(
+    if (!difference.within(
             {.max = scene.golden->max, .mean = scene.golden->mean, .share = scene.golden->share}))
-        picture.verdict = Verdict::kPassed;
-    else
         picture.cause = cause_of(provenance_in(read_png_info(path)), job.made, scene, settings);
     return picture;
 }
 
-class Runner {
-  public:
-    Runner(const SuiteDef& def, const std::vector<std::string>& references, std::int64_t all)
-        : def_(def), references_(references), all_(all) {
-        report_progress(def_.on_progress, 0, all_);
+/// Compares a picture with its references until one passes. If none does, the result is that of the plain
+/// one.
+Checked judged(const Run& run, const Image& drawn, const Job& job, const Checked& picture) {
+    Checked result = picture;
+    result.cause = {.kind = Cause::Kind::kNoReference};
+    for (const std::string& path : variants_of(run.references, picture.name)) {
+        Checked one = compared(drawn, job, run.def.settings, path, picture);
+        if (!one.failed()) return one;
+        if (result.reference.empty() || fs::path(path).filename() == picture.name) result = std::move(one);
     }
+    return result;
+}
 
-    void check(std::vector<Case>& cases) {
-        for (Case& one : cases) queue_.push_back([this, &one] { begin(one); });
-        queue_.run(threads_);
+/// Encodes a picture that is missing or differs, in an update also one without a record.
+void add_file(Run& run, const Job& job, const Image& drawn, Checked& picture) {
+    const SuiteDef& def = run.def;
+    const std::string path = (fs::path(def.folder) / picture.name).string();
+    if (!picture.failed()) {
+        if (!def.update || fs::path(picture.reference).filename() != picture.name) return;
+        if (provenance_in(read_png_info(path)).golden) return;
+        picture.cause = {.kind = Cause::Kind::kLostRecord};
     }
+    if (!def.force && is_no_png(path)) return;
+    picture.changed = def.update;
+    if (def.dry_run) return;
+    if (!def.update) picture.drawn_path = (fs::path(def.new_folder) / picture.name).string();
+    std::string bytes = media::png_bytes(drawn, to_png_info(job.made, job.film, picture.time_s));
+    const std::lock_guard lock(run.mutex);
+    run.files[picture.name] = std::move(bytes);
+}
 
-    /// The pictures of an update, or those for SuiteDef::new_folder, by their names.
-    [[nodiscard]] const Files& files() const { return files_; }
-
-  private:
-    /// Makes the film of a scene, and pieces of work of its pictures.
-    void begin(Case& one) {
-        auto job = std::make_shared<Job>();
-        job->scene = &one;
-        job->left = one.pictures.size();
-        const Scene scene = load_scene(one.path, one.settings);
-        FilmDef def = def_.film;
-        def.stills_s = one.scene.golden->at_s;
-        def.stills_shutter = scene.video.shutter;
-        job->film.emplace(scene, def);
-        job->made = record_of(*job->film);
-        const std::size_t count = one.pictures.size();
-        const auto pieces = std::clamp<std::size_t>(count / kMinApart, 1, static_cast<std::size_t>(threads_));
-        for (std::size_t i = 0; i < pieces; ++i)
-            queue_.push_front([this, job, first = count * i / pieces, end = count * (i + 1) / pieces] {
-                draw(*job, first, end);
-            });
+/// Draws and judges the pictures first <= i < end of a scene.
+void draw(Run& run, const Job& job, std::size_t first, std::size_t end) {
+    const SuiteDef& def = run.def;
+    const render::CanvasUse canvas(job.film.context_def());
+    for (std::size_t i = first; i < end; ++i) {
+        Checked& picture = job.scene.pictures[i];
+        if (!picture.selected) continue;
+        const auto start = std::chrono::steady_clock::now();
+        const double shutter = job.film.scene().video.shutter;
+        const bool is_empty =
+            film::paint(job.film.look(), job.film.motion(), picture.time_s, shutter, *canvas).is_empty;
+        const Image& drawn = canvas->image();
+        picture = judged(run, drawn, job, picture);
+        picture.is_empty = is_empty || has_one_color(drawn);
+        if (!picture.is_empty && (def.update || !def.new_folder.empty())) add_file(run, job, drawn, picture);
+        picture.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        const std::lock_guard lock(run.mutex);
+        if (picture.failed() && run.kept++ < def.most_drawn) picture.drawn = drawn;
+        report_progress(def.on_progress, ++run.done, run.all);
     }
+}
 
-    void draw(Job& job, std::size_t first, std::size_t end) {
-        const render::CanvasUse canvas(job.film->context_def());
-        for (std::size_t i = first; i < end; ++i) {
-            Checked& picture = job.scene->pictures[i];
-            if (!picture.selected) continue;
-            const auto start = std::chrono::steady_clock::now();
-            const double shutter = job.film->scene().video.shutter;
-            const bool is_empty =
-                film::paint(job.film->look(), job.film->motion(), picture.time_s, shutter, *canvas).is_empty;
-            const Image& drawn = canvas->image();
-            picture = judged(drawn, job, picture);
-            if (is_empty || has_one_color(drawn))
-                picture.verdict = Verdict::kEmpty;
-            else if (def_.update || !def_.new_folder.empty())
-                add_file(job, drawn, picture);
-            picture.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-            const std::lock_guard lock(mutex_);
-            if (picture.failed() && drawn_++ < def_.most_drawn) picture.drawn = drawn;
-            report_progress(def_.on_progress, ++done_, all_);
-        }
-        {
-            const std::lock_guard lock(mutex_);
-            job.left -= end - first;
-            if (job.left > 0) return;
-        }
-        job.film.reset();
-    }
-
-    /// Compares a picture with its references until one passes. If none does, the result is that of the plain
-    /// one.
-    Checked judged(const Image& drawn, const Job& job, const Checked& picture) const {
-        Checked result = picture;
-        result.verdict = Verdict::kMissing;
-        result.cause = {.kind = Cause::Kind::kNoReference};
-        for (const std::string& path : variants_of(references_, picture.name)) {
-            Checked one = compared(drawn, job, def_.settings, path, picture);
-            if (one.verdict == Verdict::kPassed) return one;
-            if (result.verdict == Verdict::kMissing || fs::path(path).filename() == picture.name)
-                result = std::move(one);
-        }
-        return result;
-    }
-
-    /// Encodes a picture that is missing or differs, in an update also one without a record.
-    void add_file(const Job& job, const Image& drawn, Checked& picture) {
-        const std::string path = (fs::path(def_.folder) / picture.name).string();
-        if (picture.verdict == Verdict::kPassed) {
-            if (!def_.update || fs::path(picture.reference).filename() != picture.name) return;
-            if (provenance_in(read_png_info(path)).golden) return;
-            picture.cause = {.kind = Cause::Kind::kLostRecord};
-        }
-        if (!def_.force && is_no_png(path)) return;
-        picture.changed = def_.update;
-        if (def_.dry_run) return;
-        if (!def_.update) picture.drawn_path = (fs::path(def_.new_folder) / picture.name).string();
-        std::string bytes = media::png_bytes(drawn, to_png_info(job.made, *job.film, picture.time_s));
-        const std::lock_guard lock(mutex_);
-        files_[picture.name] = std::move(bytes);
-    }
-
-    const SuiteDef& def_;
-    const std::vector<std::string>& references_;
-    Files files_;  ///< written when all pictures are drawn
-    std::int64_t all_;
-    int threads_ = usable_cores();
-    std::mutex mutex_;
-    std::int64_t done_ = 0;
-    int drawn_ = 0;
-    TaskQueue queue_;
-};
+/// Makes the film of a scene, and tasks of its pictures. The last of these ends the film.
+void begin(Run& run, Case& one) {
+    const Scene scene = one.drawn();
+    FilmDef def = run.def.film;
+    def.stills_s = scene.golden->at_s;
+    def.stills_shutter = scene.video.shutter;
+    const Film film(scene, def);
+    const auto job = std::make_shared<const Job>(Job{one, film, record_of(film)});
+    const std::size_t count = one.pictures.size();
+    const auto pieces = std::clamp<std::size_t>(count / kMinApart, 1, static_cast<std::size_t>(run.threads));
+    for (std::size_t i = 0; i < pieces; ++i)
+        run.queue.push_front([&run, job, first = count * i / pieces, end = count * (i + 1) / pieces] {
+            draw(run, *job, first, end);
+        });
+}
 
 /// Notes the kept pictures whose texts are gone.
 void note_lost_records(const SuiteDef& def, const std::vector<Case>& cases, SuiteResult& result) {
@@ -194,7 +166,6 @@ Checked stale_picture(const SuiteDef& def, const std::string& path) {
                                            : Cause::Kind::kUnasked;
     return {.scene = {},
             .name = fs::path(path).filename().string(),
-            .verdict = Verdict::kStale,
             .reference = path,
             .cause = {.kind = kind},
             .changed = def.update && (kind == Cause::Kind::kUnasked || def.force)};
@@ -223,9 +194,11 @@ SuiteResult run(const SuiteDef& def) {
                   [](const Case& one) { return std::ranges::none_of(one.pictures, &Checked::selected); });
     std::int64_t all = 0;
     for (const Case& one : suite.cases) all += std::ranges::count_if(one.pictures, &Checked::selected);
-    Runner runner(def, suite.references, all);
-    runner.check(suite.cases);
-    if (!def.new_folder.empty()) write_new(def, suite.cases, runner.files());
+    Run run{def, suite.references, all};
+    report_progress(def.on_progress, 0, all);
+    for (Case& one : suite.cases) run.queue.push_back([&run, &one] { begin(run, one); });
+    run.queue.run(run.threads);
+    if (!def.new_folder.empty()) write_new(def, suite.cases, run.files);
     if (!def.update) note_lost_records(def, suite.cases, result);
     for (Case& one : suite.cases)
         std::copy_if(std::make_move_iterator(one.pictures.begin()),
@@ -237,7 +210,7 @@ SuiteResult run(const SuiteDef& def) {
         if (result.pictures.back().changed) removed.push_back(path);
     }
     std::ranges::move(suite.invalid, std::back_inserter(result.pictures));
-    if (def.update && !def.dry_run) publish(def.folder, runner.files(), removed);
+    if (def.update && !def.dry_run) publish(def.folder, run.files, removed);
     return result;
 }
 

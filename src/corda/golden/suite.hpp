@@ -44,7 +44,7 @@ struct Checked {
     std::string scene;
     std::string name;  ///< of its file in the folder of references; of a scene, its path
     double time_s = 0.0;
-    Verdict verdict = Verdict::kPassed;
+    bool is_empty = false;                   ///< nothing is in view
     std::optional<Difference> difference{};  ///< from a reference of the same size
     std::string reference{};                 ///< path that it was compared with last; empty: none
     std::string drawn_path{};                ///< in SuiteDef::new_folder; empty: it was not written
@@ -54,7 +54,9 @@ struct Checked {
     bool selected = true;          ///< see SuiteDef::only; others are not in a result
     std::optional<Image> drawn{};  ///< if it failed, see SuiteDef::most_drawn
 
-    [[nodiscard]] bool failed() const { return verdict != Verdict::kPassed && !changed; }
+    /// That of the cause, or kEmpty.
+    [[nodiscard]] Verdict verdict() const;
+    [[nodiscard]] bool failed() const { return verdict() != Verdict::kPassed && !changed; }
 };
 
 struct SuiteResult {

@@ -15,8 +15,8 @@ using ::testing::Not;
 
 using Kind = Cause::Kind;
 
-Checked picture(const std::string& name, Verdict verdict, const Cause& cause = {}) {
-    return {.scene = "swing", .name = name, .verdict = verdict, .cause = cause, .seconds = 0.25};
+Checked picture(const std::string& name, const Cause& cause = {}, bool is_empty = false) {
+    return {.scene = "swing", .name = name, .is_empty = is_empty, .cause = cause, .seconds = 0.25};
 }
 
 const KeyChange kDrag{.key = "world.drag", .now = "0.2", .before = "0"};
@@ -50,7 +50,9 @@ TEST(GoldenCauses, NameTheSceneBeforeWhatFollows) {
          "no scene asks for it; it has no record of how it was made, and --update --force removes it"},
     };
     for (const auto& [verdict, cause, group, whole] : cases) {
-        const CauseText text = cause_text(picture("a.png", verdict, cause));
+        const Checked checked = picture("a.png", cause, verdict == Verdict::kEmpty);
+        EXPECT_EQ(checked.verdict(), verdict);
+        const CauseText text = cause_text(checked);
         EXPECT_EQ(text.group, group);
         EXPECT_EQ(text.whole, whole);
     }
@@ -58,9 +60,10 @@ TEST(GoldenCauses, NameTheSceneBeforeWhatFollows) {
 
 TEST(GoldenTotals, CountEachPictureOnce) {
     SuiteResult result;
-    for (const Verdict verdict : {Verdict::kPassed, Verdict::kDifferent, Verdict::kEmpty, Verdict::kMissing,
-                                  Verdict::kStale, Verdict::kStale, Verdict::kInvalid})
-        result.pictures.push_back(picture("a.png", verdict));
+    for (const Kind kind : {Kind::kNone, Kind::kPixels, Kind::kNone, Kind::kNoReference, Kind::kUnasked,
+                            Kind::kUnaskedNoPng, Kind::kInvalidScene})
+        result.pictures.push_back(picture("a.png", {.kind = kind}));
+    result.pictures[2].is_empty = true;
     EXPECT_EQ(result.totals(), "6 pictures: 1 passed, 2 failed, 1 missing, 2 stale; 1 scene invalid");
     result.may_change = true;
     result.pictures[0].changed = result.pictures[1].changed = result.pictures[4].changed = true;
@@ -73,10 +76,8 @@ TEST(GoldenTotals, CountEachPictureOnce) {
 TEST(GoldenMarkdown, HasATablePerCauseAndEscapesText) {
     SuiteResult result;
     const Cause drag{.kind = Kind::kScene, .changed = {kDrag}, .chosen = {kCamera}};
-    result.pictures = {picture("a.png", Verdict::kDifferent, drag),
-                       picture("b|<i>.png", Verdict::kMissing, {.kind = Kind::kNoReference}),
-                       picture("c.png", Verdict::kDifferent, {.kind = Kind::kScene, .changed = {kDrag}}),
-                       picture("d.png", Verdict::kPassed)};
+    result.pictures = {picture("a.png", drag), picture("b|<i>.png", {.kind = Kind::kNoReference}),
+                       picture("c.png", {.kind = Kind::kScene, .changed = {kDrag}}), picture("d.png")};
     EXPECT_EQ(
         markdown(result),
         "### Golden pictures\n\n4 pictures: 1 passed, 2 failed, 1 missing, 0 stale\n"
@@ -90,7 +91,7 @@ TEST(GoldenMarkdown, HasATablePerCauseAndEscapesText) {
 TEST(GoldenMarkdown, FitsIntoAComment) {
     SuiteResult result;
     for (int i = 0; i < 300; ++i) {
-        result.pictures.push_back(picture("swing_t0000_000000.png", Verdict::kDifferent,
+        result.pictures.push_back(picture("swing_t0000_000000.png",
                                           {.kind = Kind::kScene, .changed = {kDrag}, .chosen = {kCamera}}));
         result.pictures.back().difference =
             Difference{.equal = false, .max = 3.0, .mean = 0.5, .share = 0.25};
@@ -101,9 +102,8 @@ TEST(GoldenMarkdown, FitsIntoAComment) {
 
 TEST(GoldenJunit, HasTimesAndFigures) {
     SuiteResult result;
-    result.pictures = {picture("a.png", Verdict::kPassed),
-                       picture("b.png", Verdict::kDifferent, {.kind = Kind::kUnrecorded}),
-                       picture("c.toml", Verdict::kInvalid, {.kind = Kind::kInvalidScene})};
+    result.pictures = {picture("a.png"), picture("b.png", {.kind = Kind::kUnrecorded}),
+                       picture("c.toml", {.kind = Kind::kInvalidScene})};
     result.pictures[1].difference = Difference{.equal = false, .max = 3.0, .mean = 0.5, .share = 0.25};
     EXPECT_THAT(
         junit_xml(result),
