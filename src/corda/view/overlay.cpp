@@ -56,18 +56,19 @@ std::string time_text(const Overlay& overlay, double time_s) {
 /// Panels above each other have labels of the same width.
 std::vector<PlotPanel> make_plots(const TextArea& area, const PlotLayout& layout, const StyleDef& style,
                                   const PixelRect& frame, const OverlayData& data) {
-    std::vector<PlotPanel> plots;
-    if (data.plots.empty()) return plots;
     std::map<int, int> widest_px;  // by the left edge of panels
-    for (std::size_t i = 0; i < layout.panels.size(); ++i) {
-        plots.emplace_back(style, frame.width(), frame.height(), layout.panels[i], layout.em_px);
-        plots[i].set_data(data.plots[i], data.body_colors, 0, area.font, area.words);
+    const auto panel = [&](std::size_t i) {
+        const PixelRect& rect = layout.panels[i];
+        return PlotPanel(data.plots[i], {style, frame, rect, layout.em_px, data.body_colors, area.font,
+                                         area.words, widest_px[rect.x0]});
+    };
+    const std::size_t count = std::min(layout.panels.size(), data.plots.size());
+    for (std::size_t i = 0; i < count; ++i) {
         int& px = widest_px[layout.panels[i].x0];
-        px = std::max(px, plots[i].label_px());
+        px = std::max(px, panel(i).label_px());
     }
-    for (std::size_t i = 0; i < plots.size(); ++i)
-        plots[i].set_data(data.plots[i], data.body_colors, widest_px[layout.panels[i].x0], area.font,
-                          area.words);
+    std::vector<PlotPanel> plots;
+    for (std::size_t i = 0; i < count; ++i) plots.push_back(panel(i));
     return plots;
 }
 

@@ -115,22 +115,42 @@ PlotLayout lay_out_plots(std::size_t count, int width_px, int height_px) {
     return {width_px, height_px};
 }
 
-PlotPanel::PlotPanel(const StyleDef& style, int width_px, int height_px, const PixelRect& panel, int em_px)
-    : width_px_(width_px), height_px_(height_px), panel_(panel) {
-    const int side_px = std::min(width_px, height_px);
-    plot_.em_px = em_px;
-    edge_px_ = edge_of(side_px, em_px);
-    plot_.line_px = std::max(1, rounded(kBoxLineWidth * side_px));
-    text_color_ = text_color(theme_colors(style));
+PlotPanel::PlotPanel(const PlotData& data, const PlotPlace& place)
+    : width_px_(place.frame.width()),
+      height_px_(place.frame.height()),
+      panel_(place.panel),
+      edge_px_(edge_of(std::min(width_px_, height_px_), place.em_px)),
+      text_color_(text_color(theme_colors(place.style))) {
+    plot_.em_px = place.em_px;
+    plot_.line_px = std::max(1, rounded(kBoxLineWidth * std::min(width_px_, height_px_)));
+    start_axes(data, place.font);
     // The theme's: those of a style are for its bodies.
     StyleDef plain;
-    plain.theme = style.theme;
-    palette_ = theme_colors(plain).palette;
+    plain.theme = place.style.theme;
+    const std::vector<Color> palette = theme_colors(plain).palette;
+    for (const PlotData::Curve& curve : data.curves) {
+        const auto hue = static_cast<std::size_t>(curve.hue);
+        Color color = hue == 0 ? text_color_ : palette[hue];
+        if (curve.body) {
+            // Bodies whose colours tell a quantity all have the same.
+            const Color own = place.body_colors[*curve.body];
+            const bool is_alone = std::ranges::count_if(data.curves, [&](const PlotData::Curve& other) {
+                                      return place.body_colors[*other.body] == own;
+                                  }) == 1;
+            color = is_alone ? own : palette[*curve.body % palette.size()];
+        }
+        curves_.push_back({curve.name, color, {}, {}, curve.points});
+    }
+    place_names(place.words);
+    const bool is_drawable = can_be_divided(plot_.x.high - plot_.x.low) &&
+                             (data.y.is_log || can_be_divided(plot_.y.high - plot_.y.low));
+    has_room_ = !is_drawable || place_box(data.end_s > 0.0, place.least_label_px, place.font);
+    is_shown_ = is_drawable && has_room_;
+    if (!is_shown_) return;
+    for (PixelCurve& curve : curves_) place_points(curve);
 }
 
-void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_colors, int least_label_px,
-                         const Font& font, const Font& words) {
-    const bool is_over_time = data.end_s > 0.0;
+void PlotPanel::start_axes(const PlotData& data, const Font& font) {
     const auto start_axis = [&](const PlotData::AxisName& name, const ValueRange& range) {
         PlotAxis axis;
         axis.language = data.language;
@@ -146,31 +166,10 @@ void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_color
         return axis;
     };
     plot_.x =
-        start_axis(data.x, is_over_time ? ValueRange{0.0, data.end_s}
-                                        : drawable(range_of(data, &CurvePoint::x), data.x.least_extent));
+        start_axis(data.x, data.end_s > 0.0 ? ValueRange{0.0, data.end_s}
+                                            : drawable(range_of(data, &CurvePoint::x), data.x.least_extent));
     const ValueRange y = range_of(data, &CurvePoint::y);
     plot_.y = start_axis(data.y, data.y.is_log ? y : drawable(y, data.y.least_extent));
-    curves_.clear();
-    for (const PlotData::Curve& curve : data.curves) {
-        const auto hue = static_cast<std::size_t>(curve.hue);
-        Color color = hue == 0 ? text_color_ : palette_[hue];
-        if (curve.body) {
-            // Bodies whose colours tell a quantity all have the same.
-            const auto is_alike = [&](const PlotData::Curve& other) {
-                return body_colors[*other.body] == body_colors[*curve.body];
-            };
-            const bool is_alone = std::count_if(data.curves.begin(), data.curves.end(), is_alike) == 1;
-            color = is_alone ? body_colors[*curve.body] : palette_[*curve.body % palette_.size()];
-        }
-        curves_.push_back({curve.name, color, {}, {}, curve.points});
-    }
-    place_names(words);
-    const bool is_drawable = can_be_divided(plot_.x.high - plot_.x.low) &&
-                             (data.y.is_log || can_be_divided(plot_.y.high - plot_.y.low));
-    has_room_ = !is_drawable || place_box(is_over_time, least_label_px, font);
-    is_shown_ = is_drawable && has_room_;
-    if (!is_shown_) return;
-    for (PixelCurve& curve : curves_) place_points(curve);
 }
 
 void PlotPanel::place_points(PixelCurve& curve) const {

@@ -59,16 +59,24 @@ struct PlotLayout {
 };
 [[nodiscard]] PlotLayout lay_out_plots(std::size_t count, int width_px, int height_px);
 
+/// The place of a plot in a frame, and its colours and fonts.
+struct PlotPlace {
+    const StyleDef& style;
+    PixelRect frame;
+    PixelRect panel;  ///< see PlotLayout
+    int em_px = 0;    ///< see PlotLayout
+    std::span<const Color> body_colors;
+    const Font& font;
+    const Font& words;       ///< of the names of curves
+    int least_label_px = 0;  ///< minimum width of the labels of the y axis
+};
+
 /// A plot of the whole motion whose curves grow with time.
 class PlotPanel {
   public:
-    /// `panel` and `em_px`: see PlotLayout.
-    PlotPanel(const StyleDef& style, int width_px, int height_px, const PixelRect& panel, int em_px);
+    /// Fits the axes to the data. The parts of `place` need not outlive it.
+    PlotPanel(const PlotData& data, const PlotPlace& place);
 
-    /// Sets the data and fits the axes to them. Nothing is drawn before the first call. `least_label_px`:
-    /// minimum width of the labels of the y axis.
-    void set_data(const PlotData& data, std::span<const Color> body_colors, int least_label_px,
-                  const Font& font, const Font& words);
     /// Width of the labels of the y axis: panels above each other have the same.
     [[nodiscard]] int label_px() const { return label_px_; }
     [[nodiscard]] const PixelRect& panel() const { return panel_; }
@@ -99,6 +107,8 @@ class PlotPanel {
         int row = 0;
     };
 
+    /// Fills in the titles and the ranges of the axes.
+    void start_axes(const PlotData& data, const Font& font);
     /// Places the names in rows, smaller ones if that shows them all.
     void place_names(const Font& font);
     /// Places names of size `name_em_px_`; false if there is no room for all.
@@ -118,7 +128,6 @@ class PlotPanel {
     int label_px_ = 0;
     int edge_px_ = 0;  ///< from the edges of the frame to texts
     Color text_color_;
-    std::vector<Color> palette_;  ///< of the theme
     bool has_room_ = true;
     bool is_shown_ = false;
     PlotBox plot_;

@@ -33,10 +33,10 @@ DrawList panel_of(const PlotData& data, int width, int height, std::size_t k = k
     list.width = width;
     list.height = height;
     Font font;
+    const StyleDef style;
     const PlotLayout layout = lay_out_plots(1, width, height);
     for (const PixelRect& box : layout.panels) {
-        PlotPanel panel({}, width, height, box, layout.em_px);
-        panel.set_data(data, {}, 0, font, font);
+        const PlotPanel panel(data, {style, {0, 0, width, height}, box, layout.em_px, {}, font, font});
         panel.draw_curves(data.curves.front().points[k].time_s, list);
         panel.draw_axes(list, font, font);
     }
@@ -190,8 +190,9 @@ std::vector<Color> colors_of(const PlotData& data, const std::vector<Color>& bod
     StyleDef style;
     style.theme = theme;
     const PlotLayout layout = lay_out_plots(1, list.width, list.height);
-    PlotPanel panel(style, list.width, list.height, layout.panels.at(0), layout.em_px);
-    panel.set_data(data, body_colors, 0, font, font);
+    const PlotPanel panel(
+        data,
+        {style, {0, 0, list.width, list.height}, layout.panels.at(0), layout.em_px, body_colors, font, font});
     panel.draw_curves(10.0, list);
     std::vector<Color> colors;
     for (auto layer = list.layers.rbegin(); layer + 1 != list.layers.rend(); ++layer)
@@ -254,8 +255,8 @@ TEST(PlotPanel, NamesEveryCurveInSmallerLettersIfItMust) {
     list.width = 640;
     list.height = 360;
     Font font;
-    PlotPanel panel({}, 640, 360, layout.panels[0], layout.em_px);
-    panel.set_data(data, {}, 0, font, font);
+    const StyleDef style;
+    const PlotPanel panel(data, {style, {0, 0, 640, 360}, layout.panels[0], layout.em_px, {}, font, font});
     panel.draw_axes(list, font, font);
     for (const PlotData::Curve& curve : data.curves) {
         const auto is_name = [&](const Text& text) { return text.utf8 == curve.name; };
