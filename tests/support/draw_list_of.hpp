@@ -39,7 +39,7 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
                                    std::span<const view::Trail> trails = {},
                                    const sim::Histogram& histogram = {},
                                    const std::vector<view::PlotData>& plots = {},
-                                   const view::ArrowExtents& arrows = {}) {
+                                   const view::ArrowLayer& arrows = {}) {
     const int width_px = scene.video.width_px;
     const int height_px = scene.video.height_px;
     std::optional<view::ColorScale> scale;
@@ -93,14 +93,13 @@ inline view::DrawList draw_list_of(const Film& film, double time_s) {
         include(film.state(k), motion);
         add_values(film, film.state(k), histogram);
     }
-    view::ArrowExtents arrows;
+    view::ArrowExtents extents;
     const Scene& scene = film.scene();
-    const view::ArrowLayer layer(film.system(), scene.world.gravity_m_s2, scene.style,
-                                 std::min(scene.video.width_px, scene.video.height_px));
+    const view::ArrowPlaces places(film.system(), scene.world.gravity_m_s2, scene.style.arrows);
     for (std::int64_t k = 0; k <= film.last_frame() && scene.style.arrows != Arrows::kNone; ++k)
-        arrows.include(layer.of(film.state(k)), false);
+        extents.include(places.of(film.state(k)), false);
     for (const double instant_s : film::arrow_times_s(scene))
-        arrows.include(layer.of(film.state_at(instant_s)), true);
+        extents.include(places.of(film.state_at(instant_s)), true);
     std::vector<view::Trail> trails(test::traced(film).size());
     const double trail_s = film.scene().style.trail_s;
     for (std::int64_t k = 0; k <= film.last_frame() && !trails.empty(); ++k) {
@@ -114,10 +113,11 @@ inline view::DrawList draw_list_of(const Film& film, double time_s) {
         film.figures_at(time_s).energy_error,
         method_caption(film.plan(), film.error_estimate_px(), film.scene().overlay.language),
         {}};
+    const double side_px = std::min(scene.video.width_px, scene.video.height_px);
     std::vector<view::PlotData> plots;
     if (!scene.overlay.plots.empty()) plots = film::plots_of(scene, film.motion());
     return draw_list_of(film.scene(), film.system(), film.camera_at(time_s), state, motion, caption, trails,
-                        histogram, plots, arrows);
+                        histogram, plots, {places, scene.style, side_px, extents});
 }
 
 }  // namespace corda::test

@@ -82,20 +82,20 @@ std::vector<Vec2> smoothed(const std::vector<Vec2>& path, std::int64_t half) {
     return smooth;
 }
 
-/// The extents of arrows at frame times and arrow_times_s().
-view::ArrowExtents arrow_extents(const Scene& scene, const Motion& motion) {
+/// The arrows, with the scale of their extents at frame times and arrow_times_s().
+view::ArrowLayer arrow_layer(const Scene& scene, const Motion& motion) {
+    if (scene.style.arrows == Arrows::kNone) return {};
+    view::ArrowPlaces places(motion.system, scene.world.gravity_m_s2, scene.style.arrows);
     view::ArrowExtents extents;
-    if (scene.style.arrows == Arrows::kNone) return extents;
     const VideoDef& video = scene.video;
-    const view::ArrowLayer arrows(motion.system, scene.world.gravity_m_s2, scene.style,
-                                  std::min(video.width_px, video.height_px));
     const std::vector<double> instants_s = arrow_times_s(scene);
     const Timeline timeline(video.scene_rate(), last_frame_of(scene), instants_s);
     motion.for_each(motion.times_of(timeline), [&](const State& state, const Figures& /*figures*/) {
-        extents.include(arrows.of(state),
+        extents.include(places.of(state),
                         std::binary_search(instants_s.begin(), instants_s.end(), state.time_s));
     });
-    return extents;
+    return {std::move(places), scene.style, static_cast<double>(std::min(video.width_px, video.height_px)),
+            extents};
 }
 
 std::optional<view::ColorScale> color_scale(const Scene& scene, const sim::Histogram& histogram) {
@@ -166,7 +166,7 @@ double height_along(const FollowedPath& path, const Look& look, const Motion& mo
         check_cancelled();
         for (std::size_t i = 0; i < about.size(); ++i)
             about[i].include(state.x_m[i] - path.at_m[k].x, state.y_m[i] - path.at_m[k].y);
-        std::vector<view::Arrow> all = look.view.arrows.of(state);
+        std::vector<view::Arrow> all = look.view.arrows.places().of(state);
         for (view::Arrow& arrow : all) arrow.at_m = arrow.at_m - path.at_m[k];
         arrows.include(all, false);
         ++k;
@@ -236,7 +236,7 @@ Look look_at(const Scene& scene, const Motion& motion) {
     if (!scene.overlay.plots.empty()) plots = plots_of(scene, motion);
     Look look =
         fitted_look(scene, motion.system,
-                    {bounds, color_scale(scene, recording.histogram()), arrow_extents(scene, motion)}, plots);
+                    {bounds, color_scale(scene, recording.histogram()), arrow_layer(scene, motion)}, plots);
     if (scene.camera.follow) {
         const FollowedPath path = followed_path(scene, motion);
         if (!scene.camera.height_m) look.camera.height_m = height_along(path, look, motion);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "corda/view/colors.hpp"
 
@@ -112,20 +113,8 @@ void add_arrow(PixelPoint from, PixelPoint to, double side_px, bool has_halo, bo
     }
 }
 
-ArrowLayer::ArrowLayer(const System& system, Vec2 gravity_m_s2, const StyleDef& style, double side_px,
-                       const ArrowExtents& extents)
-    : system_(&system),
-      gravity_m_s2_(gravity_m_s2),
-      kind_(style.arrows),
-      color_(arrow_color(style)),
-      side_px_(side_px),
-      extents_(extents),
-      scale_{0.0, extents.longest(), extents.is_cut()},
-      usual_(scale_.is_cut ? scale_.longest / kCut : scale_.longest) {
-    const double longest_px = side_px_ * (kind_ == Arrows::kWeight    ? kLongestWeight
-                                          : kind_ == Arrows::kTension ? kLongestTension
-                                                                      : kLongest);
-    if (scale_.longest > 0.0) scale_.pixels_per_unit = longest_px / scale_.longest;
+ArrowPlaces::ArrowPlaces(const System& system, Vec2 gravity_m_s2, Arrows kind)
+    : system_(&system), gravity_m_s2_(gravity_m_s2), kind_(kind) {
     const std::size_t bodies = kind_ == Arrows::kNone ? 0 : system.bodies.size();
     for (std::size_t b = 0; b < bodies; b += (bodies + kMaxArrows - 1) / kMaxArrows) {
         const Body& body = system.bodies[b];
@@ -147,7 +136,7 @@ ArrowLayer::ArrowLayer(const System& system, Vec2 gravity_m_s2, const StyleDef& 
     }
 }
 
-double ArrowLayer::to_support_m(std::size_t particle, std::size_t k) const {
+double ArrowPlaces::to_support_m(std::size_t particle, std::size_t k) const {
     double path_m = 0.0;
     for (;; --k) {
         const Bar& bar = system_->bars[k];
@@ -159,7 +148,7 @@ double ArrowLayer::to_support_m(std::size_t particle, std::size_t k) const {
     }
 }
 
-std::vector<Arrow> ArrowLayer::of(const State& state, double apart_m) const {
+std::vector<Arrow> ArrowPlaces::of(const State& state, double apart_m) const {
     std::vector<Arrow> arrows;
     double gone_m = HUGE_VAL;
     for (const auto& [i, k, path_m, to_support_m] : places_) {
@@ -182,6 +171,19 @@ std::vector<Arrow> ArrowLayer::of(const State& state, double apart_m) const {
     return arrows;
 }
 
+ArrowLayer::ArrowLayer(ArrowPlaces places, const StyleDef& style, double side_px, const ArrowExtents& extents)
+    : places_(std::move(places)),
+      color_(arrow_color(style)),
+      side_px_(side_px),
+      extents_(extents),
+      scale_{0.0, extents.longest(), extents.is_cut()},
+      usual_(scale_.is_cut ? scale_.longest / kCut : scale_.longest) {
+    const double longest_px = side_px_ * (style.arrows == Arrows::kWeight    ? kLongestWeight
+                                          : style.arrows == Arrows::kTension ? kLongestTension
+                                                                             : kLongest);
+    if (scale_.longest > 0.0) scale_.pixels_per_unit = longest_px / scale_.longest;
+}
+
 void ArrowLayer::list(std::vector<Drawn>& drawn, const ArrowExtents* extents) const {
     (extents == nullptr ? extents_ : *extents)
         .list(scale_.longest, scale_.pixels_per_unit, (kHeadWidth + kHeadLine) * shaft_px(side_px_), drawn);
@@ -193,7 +195,7 @@ void ArrowLayer::draw(const State& state, const Camera& camera, DrawList& list) 
     list.layers.back().is_note = true;
     const double head_px = kHeadLength * shaft_px(side_px_);
     const double apart_px = scale_.pixels_per_unit * usual_ + head_px;
-    for (const Arrow& arrow : of(state, apart_px / camera.pixels_per_metre())) {
+    for (const Arrow& arrow : places_.of(state, apart_px / camera.pixels_per_metre())) {
         const double size = sim::length(arrow.value.x, arrow.value.y);
         const double length_px = scale_.pixels_per_unit * std::min(size, scale_.longest);
         if (length_px < head_px) continue;

@@ -62,24 +62,16 @@ struct ArrowScale {
     bool is_cut = false;           ///< some are larger
 };
 
-/// The arrows of a scene, with one scale for all pictures. Of many particles, or many bodies, only some have
-/// them.
-class ArrowLayer {
+/// The particles of a scene that have arrows: of many particles, or many bodies, only some.
+class ArrowPlaces {
   public:
-    /// The extents during the motion set the scale; without extents nothing is drawn. `system` must outlive
-    /// this.
-    ArrowLayer(const System& system, Vec2 gravity_m_s2, const StyleDef& style, double side_px,
-               const ArrowExtents& extents = {});
+    ArrowPlaces() = default;
+    /// `system` must outlive this.
+    ArrowPlaces(const System& system, Vec2 gravity_m_s2, Arrows kind);
 
     /// The arrows of a state, which must have fields_of() them; those along a rope at least `apart_m` apart,
     /// and as far from the support that they point to.
     [[nodiscard]] std::vector<Arrow> of(const State& state, double apart_m = 0.0) const;
-    /// Adds the extents of all arrows, as a camera that moves sees them if `extents` are given, to a list.
-    void list(std::vector<Drawn>& drawn, const ArrowExtents* extents = nullptr) const;
-    /// Draws the arrows that are longer than their heads. Usual ones of tension in a rope do not touch,
-    /// and one that would reach a support is moved back along its line.
-    void draw(const State& state, const Camera& camera, DrawList& list) const;
-    [[nodiscard]] const ArrowScale& scale() const { return scale_; }
 
   private:
     /// A free particle. Tension pulls it along `bar`.
@@ -93,12 +85,31 @@ class ArrowLayer {
     /// The path from a particle along bar `k` and those before it to the next pin; HUGE_VAL without one.
     [[nodiscard]] double to_support_m(std::size_t particle, std::size_t k) const;
 
-    const System* system_;
+    const System* system_ = nullptr;
     Vec2 gravity_m_s2_;
-    Arrows kind_;
-    Color color_;
-    double side_px_;
+    Arrows kind_ = Arrows::kNone;
     std::vector<Place> places_;
+};
+
+/// The arrows of a scene, with one scale for all pictures; none by default.
+class ArrowLayer {
+  public:
+    ArrowLayer() = default;
+    /// The extents during the motion set the scale; without extents nothing is drawn.
+    ArrowLayer(ArrowPlaces places, const StyleDef& style, double side_px, const ArrowExtents& extents = {});
+
+    [[nodiscard]] const ArrowPlaces& places() const { return places_; }
+    /// Adds the extents of all arrows, as a camera that moves sees them if `extents` are given, to a list.
+    void list(std::vector<Drawn>& drawn, const ArrowExtents* extents = nullptr) const;
+    /// Draws the arrows that are longer than their heads. Usual ones of tension in a rope do not touch,
+    /// and one that would reach a support is moved back along its line.
+    void draw(const State& state, const Camera& camera, DrawList& list) const;
+    [[nodiscard]] const ArrowScale& scale() const { return scale_; }
+
+  private:
+    ArrowPlaces places_;
+    Color color_;
+    double side_px_ = 0.0;
     ArrowExtents extents_;
     ArrowScale scale_;
     double usual_ = 0.0;  ///< most arrows are no longer

@@ -238,17 +238,10 @@ SceneView make_scene_view(const System& system, Vec2 gravity_m_s2, const StyleDe
     const double net_width_px =
         style.net_width_px.value_or(style.rope_width_px ? kNetWidthPerRopeWidth * rope_width_px
                                                         : std::max(kMinLineWidthPx, kNetWidth * side_px));
-    SceneView view{&system,
-                   gravity_m_s2,
-                   style,
-                   theme_colors(style),
-                   width_px,
-                   height_px,
-                   side_px,
-                   rope_width_px,
-                   motion.scale,
-                   traced_particles(system, style),
-                   ArrowLayer(system, gravity_m_s2, style, side_px, motion.arrows)};
+    SceneView view{
+        &system,      gravity_m_s2, style,         theme_colors(style), width_px,
+        height_px,    side_px,      rope_width_px, motion.scale,        traced_particles(system, style),
+        motion.arrows};
     std::size_t next_color = 0;
     std::vector<double> line_px;
     for (std::size_t i = 0; i < system.bodies.size(); ++i) {

@@ -61,7 +61,7 @@ struct WholeMotion {
     std::span<const MotionBounds> bounds = {};
     /// Colours links by a quantity, whose fields the states must then have.
     std::optional<ColorScale> scale = {};
-    ArrowExtents arrows = {};  ///< set the scale of arrows; without extents there are none
+    ArrowLayer arrows = {};
 };
 
 /// A payload, or a mass of a pendulum.

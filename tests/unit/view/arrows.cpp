@@ -18,7 +18,7 @@ constexpr Vec2 kGravity{0.0, -10.0};
 ArrowLayer layer_of(const System& system, Arrows kind, const ArrowExtents& extents = {}) {
     StyleDef style;
     style.arrows = kind;
-    return {system, kGravity, style, kShorterPx, extents};
+    return {ArrowPlaces(system, kGravity, kind), style, kShorterPx, extents};
 }
 
 State state_of(const System& system) {
@@ -32,17 +32,17 @@ State state_of(const System& system) {
 
 TEST(Arrows, ShowVelocitiesOfFreeParticles) {
     const System system = build_system(std::vector{reference::straight_rope(3, 1.0, 0.0)});
-    const std::vector<Arrow> arrows = layer_of(system, Arrows::kVelocity).of(state_of(system));
+    const std::vector<Arrow> arrows = layer_of(system, Arrows::kVelocity).places().of(state_of(system));
     ASSERT_EQ(arrows.size(), 3U);  // the first particle is pinned
     EXPECT_EQ(arrows[0].value, (Vec2{3.0, -4.0}));
-    EXPECT_TRUE(layer_of(system, Arrows::kNone).of(state_of(system)).empty());
+    EXPECT_TRUE(layer_of(system, Arrows::kNone).places().of(state_of(system)).empty());
 }
 
 TEST(Arrows, ShowWeights) {
     RopeDef rope = reference::straight_rope(1, 1.0, 0.0);
     rope.mass_kg = {1.0, 0.5};
     const System system = build_system(std::vector{rope});
-    const std::vector<Arrow> arrows = layer_of(system, Arrows::kWeight).of(state_of(system));
+    const std::vector<Arrow> arrows = layer_of(system, Arrows::kWeight).places().of(state_of(system));
     ASSERT_EQ(arrows.size(), 1U);
     EXPECT_EQ(arrows[0].value, (Vec2{0.0, -5.0}));
 }
@@ -56,23 +56,24 @@ TEST(Arrows, OfTensionsPullAtBothEndsOfAPendulumAndAtOneOfARope) {
     State state = state_of(system);
     const auto values = [&] {
         std::vector<Vec2> all;
-        for (const Arrow& arrow : layer_of(system, Arrows::kTension).of(state)) all.push_back(arrow.value);
+        for (const Arrow& arrow : layer_of(system, Arrows::kTension).places().of(state))
+            all.push_back(arrow.value);
         return all;
     };
     EXPECT_EQ(values(), (std::vector<Vec2>{{0.0, 2.0}, {-2.0, 0.0}, {0.0, -2.0}}));
     state.tension_n.back() = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(values().size(), 1U);
     const System chain = build_system(std::vector{reference::straight_rope(10, 1.0, 0.0)});
-    EXPECT_EQ(layer_of(chain, Arrows::kTension).of(state_of(chain)).size(), 10U);
+    EXPECT_EQ(layer_of(chain, Arrows::kTension).places().of(state_of(chain)).size(), 10U);
 }
 
 TEST(Arrows, AreFewOnManyParticlesAndOnManyBodies) {
     const System rope = build_system(std::vector{reference::straight_rope(1000, 1.0, 0.0)});
-    const std::vector<Arrow> along = layer_of(rope, Arrows::kVelocity).of(state_of(rope));
+    const std::vector<Arrow> along = layer_of(rope, Arrows::kVelocity).places().of(state_of(rope));
     EXPECT_EQ(along.size(), 12U);
     EXPECT_EQ(along.front().at_m, (Vec2{rope.x_m.back(), rope.y_m.back()}));
     const System many = build_system(std::vector<RopeDef>(200, reference::straight_rope(2, 1.0, 0.0)));
-    const std::size_t count = layer_of(many, Arrows::kVelocity).of(state_of(many)).size();
+    const std::size_t count = layer_of(many, Arrows::kVelocity).places().of(state_of(many)).size();
     EXPECT_LE(count, 60U);
     EXPECT_GE(count, 40U);
 }
@@ -80,7 +81,7 @@ TEST(Arrows, AreFewOnManyParticlesAndOnManyBodies) {
 TEST(Arrows, HaveTheLongestAtAShareOfThePicture) {
     const System system = build_system(std::vector{reference::straight_rope(1, 1.0, 0.0)});
     ArrowExtents extents;
-    extents.include(layer_of(system, Arrows::kVelocity).of(state_of(system)), false);
+    extents.include(layer_of(system, Arrows::kVelocity).places().of(state_of(system)), false);
     EXPECT_EQ(extents.longest(), 5.0);
     const ArrowLayer layer = layer_of(system, Arrows::kVelocity, extents);
     EXPECT_DOUBLE_EQ(layer.scale().pixels_per_unit, 0.22 * kShorterPx / 5.0);
@@ -152,7 +153,7 @@ double top_px(int links, double tension_n) {
         state.y_m[i] = -1.0 * static_cast<double>(i) / links;
     }
     ArrowExtents extents;
-    extents.include(layer_of(system, Arrows::kTension).of(state), false);
+    extents.include(layer_of(system, Arrows::kTension).places().of(state), false);
     const ArrowLayer layer = layer_of(system, Arrows::kTension, extents);
     std::fill(state.tension_n.begin(), state.tension_n.end(), tension_n);
     DrawList list;
@@ -175,12 +176,12 @@ TEST(Arrows, OfTensionInARopeDoNotTouchAndSpecksAreLeftOut) {
     const System rope = build_system(std::vector{reference::straight_rope(40, 4.0, 0.0)});
     State state = state_of(rope);
     ArrowExtents extents;
-    extents.include(layer_of(rope, Arrows::kTension).of(state), false);
+    extents.include(layer_of(rope, Arrows::kTension).places().of(state), false);
     const ArrowLayer layer = layer_of(rope, Arrows::kTension, extents);
     const double longest_m = 1.0;
-    const std::vector<Arrow> apart = layer.of(state, longest_m);
+    const std::vector<Arrow> apart = layer.places().of(state, longest_m);
     ASSERT_GE(apart.size(), 3U);
-    EXPECT_LT(apart.size(), layer.of(state).size());
+    EXPECT_LT(apart.size(), layer.places().of(state).size());
     for (std::size_t i = 1; i < apart.size(); ++i)
         EXPECT_GE(sim::length(apart[i].at_m.x - apart[i - 1].at_m.x, apart[i].at_m.y - apart[i - 1].at_m.y),
                   longest_m - 1e-9);
