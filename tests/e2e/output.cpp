@@ -247,6 +247,13 @@ TEST_F(Output, ErrorsAreJsonWithJson) {
     };
     EXPECT_THAT(failure({"simulate", folder_.file("none.toml"), "--json"}, 6), HasSubstr("none.toml"));
     EXPECT_THAT(failure({"render", scene_, "--json", "--siz", "9x9"}, 2), HasSubstr("--size"));
+    const auto negative = run_corda({"plan", scene_, "--json", "--set", "world.drag=-1"});
+    const json problem = json::parse(negative.out)["error"]["problems"][0];
+    EXPECT_EQ(problem["source"], "--set world.drag=-1");
+    EXPECT_EQ(problem["key"], "world.drag");
+    EXPECT_EQ(problem["value"], "-1");
+    EXPECT_EQ(problem["what"], "-1 is not >= 0");
+    EXPECT_THAT(problem["remedy"].get<std::string>(), HasSubstr("give "));
     EXPECT_THAT(failure({"rendr", scene_, "--json"}, 2), HasSubstr("render"));
     EXPECT_THAT(failure({"plan", "--json"}, 2), HasSubstr("SCENE"));
 }

@@ -91,15 +91,26 @@ std::optional<std::string> unknown_option(const CLI::App& app, int argc, char** 
 }
 
 /// Reports an error, with --json on standard output too.
-int fail(const Console& console, ExitCode code, const std::string& text) {
-    const std::string message = printable_lines(text);
+int fail(const Console& console, const Error& error) {
+    const int code = static_cast<int>(error.code());
+    const std::string message = printable_lines(error.what());
     console.error(message);
+    nlohmann::json problems = nlohmann::json::array();
+    for (const auto& [place, what, remedy, value] : error.problems())
+        problems.push_back({{"source", printable(place.source)},
+                            {"line", place.line},
+                            {"column", place.column},
+                            {"key", printable(place.key)},
+                            {"value", printable(value)},
+                            {"what", printable_lines(what)},
+                            {"remedy", printable_lines(remedy)}});
     try {
-        console.report({{"schema", 1}, {"error", {{"code", static_cast<int>(code)}, {"message", message}}}});
+        console.report(
+            {{"schema", 1}, {"error", {{"code", code}, {"message", message}, {"problems", problems}}}});
     } catch (const Error&) {
         // Standard output takes no more; the exit code still tells.
     }
-    return static_cast<int>(code);
+    return code;
 }
 
 /// Runs the action of a command line, and turns exceptions into exit codes.
@@ -114,22 +125,24 @@ int act(const Console& console, const Action& action, const std::string& asked) 
         // A read or a write that the signal broke off fails like any other.
         const bool is_broken_off = error.code() == ExitCode::kInterrupted || error.code() == ExitCode::kIo;
         const bool is_asked = interruption() != ExitCode::kOk;
-        return fail(console, is_asked && is_broken_off ? interruption() : error.code(), error.what());
+        return fail(console, {is_asked && is_broken_off ? interruption() : error.code(), error.problems()});
     } catch (const std::bad_alloc&) {
-        return fail(console, ExitCode::kTemporary,
-                    fmt::format("out of memory for {}; a smaller scene or picture may help", asked));
+        return fail(console,
+                    {ExitCode::kTemporary,
+                     fmt::format("out of memory for {}; a smaller scene or picture may help", asked)});
     } catch (const std::system_error& error) {
         if (error.code() != std::errc::resource_unavailable_try_again &&
             error.code() != std::errc::not_enough_memory)
-            return fail(console, ExitCode::kInternal,
-                        fmt::format("internal error, please report it: {}", error.what()));
-        return fail(console, ExitCode::kTemporary,
-                    fmt::format("the system starts no further thread: {}; run fewer processes, or raise the "
-                                "limit (ulimit -u)",
-                                error.what()));
+            return fail(console, {ExitCode::kInternal,
+                                  fmt::format("internal error, please report it: {}", error.what())});
+        return fail(console,
+                    {ExitCode::kTemporary,
+                     fmt::format("the system starts no further thread: {}; run fewer processes, or raise the "
+                                 "limit (ulimit -u)",
+                                 error.what())});
     } catch (const std::exception& error) {
-        return fail(console, ExitCode::kInternal,
-                    fmt::format("internal error, please report it: {}", error.what()));
+        return fail(console,
+                    {ExitCode::kInternal, fmt::format("internal error, please report it: {}", error.what())});
     }
 }
 
@@ -148,16 +161,16 @@ int run(int argc, char** argv) {
     take_last_values(app);
     // What the options say is not known until they are parsed, and that may fail.
     const Console early({.json = std::find(argv, argv + argc, std::string_view("--json")) != argv + argc});
-    if (const auto word = unknown_command(app, argc, argv)) return fail(early, ExitCode::kUsage, *word);
+    if (const auto word = unknown_command(app, argc, argv)) return fail(early, {ExitCode::kUsage, *word});
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
         const auto word = unknown_option(app, argc, argv);
-        return fail(early, ExitCode::kUsage,
-                    word ? *word : fmt::format("{}; see --help", std::string_view(error.what())));
+        return fail(early, {ExitCode::kUsage,
+                            word ? *word : fmt::format("{}; see --help", std::string_view(error.what()))});
     } catch (const Error& error) {
-        return fail(early, error.code(), error.what());
+        return fail(early, error);
     }
     return act(Console(console_def), action, fmt::format("'{}'", fmt::join(argv + 1, argv + argc, " ")));
 }

@@ -47,9 +47,10 @@ struct Place {
 
 /// One thing that is wrong, as fields until it is printed.
 struct Problem {
-    Place place;         ///< may be empty
-    std::string what;    ///< with the value: "0 is not > 0"
-    std::string remedy;  ///< "give a number > 0"; may be empty
+    Place place;             ///< may be empty
+    std::string what;        ///< with the value: "0 is not > 0"
+    std::string remedy;      ///< "give a number > 0"; may be empty
+    std::string value = {};  ///< as TOML has it, perhaps cut off: "0"; empty: none, or a list or table
 
     /// "swing.toml:12:5: rope[0].mass: 0 is not > 0; give a number > 0"
     [[nodiscard]] std::string text() const;

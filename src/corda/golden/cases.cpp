@@ -53,7 +53,11 @@ std::optional<Image> mask_of(const std::string& scene, const GoldenDef& golden) 
         static_cast<void>(compare(blank, blank, &mask));
         return mask;
     } catch (const Error& error) {
-        throw_error(ExitCode::kInvalidScene, "{}: golden.mask: '{}': {}", scene, path, error.what());
+        const Problem& problem = error.problems().front();
+        throw Error(ExitCode::kInvalidScene, Problem{{.source = scene, .key = "golden.mask"},
+                                                     fmt::format("'{}': {}", path, problem.what),
+                                                     problem.remedy,
+                                                     fmt::format("\"{}\"", golden.mask)});
     }
 }
 
@@ -64,10 +68,12 @@ Case make_case(const std::string& path, const SuiteDef& def, std::set<std::strin
     for (const double at_s : made.scene.golden->at_s) {
         const auto within_s = time_within(at_s, made.scene.world.duration_s);
         if (!within_s)
-            throw_error(ExitCode::kInvalidScene,
-                        "{}: golden.at: {} s is after the end of the motion, {} s; give an earlier time or a "
-                        "longer world.duration",
-                        path, at_s, made.scene.world.duration_s);
+            throw Error(ExitCode::kInvalidScene,
+                        Problem{{.source = path, .key = "golden.at"},
+                                fmt::format("{} s is after the end of the motion, {} s", at_s,
+                                            made.scene.world.duration_s),
+                                "give an earlier time or a longer world.duration",
+                                fmt::format("{}", at_s)});
         const double time_s = *within_s;
         made.pictures.push_back(
             {.scene = made.scene.name, .name = name_of(made.scene.name, time_s) + kEnding, .time_s = time_s});

@@ -52,8 +52,11 @@ std::array<std::uint8_t, kChannels> heat(int difference) {
 
 void check_mask(const PixelRect& picture, const Image& mask) {
     if (mask.rect() == picture) return;
-    throw_usage("the mask has {}x{} pixels, the pictures have {}x{}; give a mask of their size", mask.width(),
-                mask.height(), picture.width(), picture.height());
+    throw Error(ExitCode::kUsage,
+                Problem{{},
+                        fmt::format("the mask has {}x{} pixels, the pictures have {}x{}", mask.width(),
+                                    mask.height(), picture.width(), picture.height()),
+                        "give a mask of their size"});
 }
 
 /// Black in the mask.
@@ -94,9 +97,9 @@ Difference compare_samples(const BasicImage<Sample>& a, const BasicImage<Sample>
     }
     result.equal = differing == 0;
     if (pixels == 0 && mask != nullptr)
-        throw Error(ExitCode::kUsage,
-                    "the mask is black everywhere, which leaves nothing to compare; make it white where "
-                    "pictures must agree");
+        throw Error(ExitCode::kUsage, Problem{{},
+                                              "the mask is black everywhere, which leaves nothing to compare",
+                                              "make it white where pictures must agree"});
     if (pixels == 0) return result;
     constexpr int kUnit = kSamplesPerUnit<Sample>;
     result.max = static_cast<double>(max) / kUnit;

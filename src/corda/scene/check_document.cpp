@@ -53,7 +53,7 @@ class ValueChecker {
 
     bool fail_for_one(const toml::node& node, const std::string& path) const {
         const std::string& word = node.as_string()->get();
-        problems_->add(node.source(), path, fmt::format("\"{}\" is a string, not a list", word),
+        problems_->add(node, path, fmt::format("\"{}\" is a string, not a list", word),
                        fmt::format("write [\"{}\"]", word));
         return false;
     }
@@ -117,7 +117,8 @@ class ValueChecker {
 
     bool check_rate(const toml::node& node, const std::string& path) const {
         const auto rate = read_rate(node);
-        if (const auto* const problem = std::get_if<std::string>(&rate)) return fail(node, path, *problem);
+        if (const auto* const problem = std::get_if<Problem>(&rate))
+            return fail(node, path, problem->what, problem->remedy);
         const double value = std::get<Rational>(rate).value();
         const bool inside = value >= key_->type.range.low && value <= key_->type.range.high;
         return inside || fail(node, path, fmt::format("{} is out of range", std::get<Rational>(rate).text()));
@@ -133,7 +134,7 @@ class ValueChecker {
         if (node.is_number()) return fail(node, path, fmt::format("{} is not allowed", text));
         const auto meant = nearest(text, words);
         if (!meant) return fail(node, path, fmt::format("\"{}\" is unknown", excerpt(text)));
-        problems_->add(node.source(), path, fmt::format("\"{}\" is unknown", excerpt(text)),
+        problems_->add(node, path, fmt::format("\"{}\" is unknown", excerpt(text)),
                        fmt::format("did you mean \"{}\"?", *meant));
         return false;
     }
@@ -175,8 +176,10 @@ class ValueChecker {
         return fail(node, path, fmt::format("{}, not {}", described(node), expected));
     }
 
-    bool fail(const toml::node& node, const std::string& path, std::string what) const {
-        problems_->add(node.source(), path, std::move(what), remedy(*key_));
+    /// `hint`: a remedy that comes before that of the key.
+    bool fail(const toml::node& node, const std::string& path, std::string what,
+              const std::string& hint = "") const {
+        problems_->add(node, path, std::move(what), hint + (hint.empty() ? "" : "; ") + remedy(*key_));
         return false;
     }
 
@@ -238,7 +241,7 @@ class TableChecker {
             const toml::node* const node = solver.get(key.name);
             if (node == nullptr || key.methods.empty() || has(key.methods, method)) continue;
             problems_->add(
-                node->source(), dotted(path, key.name),
+                *node, dotted(path, key.name),
                 fmt::format("method \"{}\" does not use it, only {}", method, fmt::join(key.methods, ", ")),
                 fmt::format("remove it{}", key.instead));
             solver.erase(key.name);
@@ -259,7 +262,7 @@ class TableChecker {
         toml::array* const list = node.as_array();
         if (list == nullptr) return fail(key, node, path, "a list");
         if (list->empty()) {
-            problems_->add(node.source(), path, "the list is empty", remedy(key));
+            problems_->add(node, path, "the list is empty", remedy(key));
             return false;
         }
         for (std::size_t i = 0; i < list->size(); ++i) {
@@ -276,8 +279,7 @@ class TableChecker {
 
     bool fail(const Key& key, const toml::node& node, const std::string& path,
               std::string_view expected) const {
-        problems_->add(node.source(), path, fmt::format("{}, not {}", described(node), expected),
-                       remedy(key));
+        problems_->add(node, path, fmt::format("{}, not {}", described(node), expected), remedy(key));
         return false;
     }
 
@@ -289,7 +291,7 @@ void check_schema(const toml::table& document, Problems& problems) {
     const toml::value<std::int64_t>* const schema = document["schema"].as_integer();
     if (schema == nullptr || std::to_string(schema->get()) == find_key("", "schema")->type.choices.front())
         return;
-    problems.add(schema->source(), "schema", fmt::format("{} is not a known version", schema->get()),
+    problems.add(*schema, "schema", fmt::format("{} is not a known version", schema->get()),
                  "this program reads schema = 1");
     problems.throw_if_any();
 }

@@ -116,12 +116,12 @@ std::vector<DefProblem> problems_of(const GoldenDef& golden) {
     return problems;
 }
 
-std::string problem_of_texts(const Scene& scene) {
+std::optional<Problem> problem_of_texts(const Scene& scene) {
     try {
         return view::missing_glyphs(shown_texts(scene), font_path(scene), scene.overlay.font);
     } catch (const Error& error) {
         if (error.code() != ExitCode::kInvalidScene) throw;
-        return error.what();
+        return error.problems().front();
     }
 }
 

@@ -14,6 +14,15 @@ namespace {
 constexpr std::size_t kMaxShown = 20;
 constexpr std::size_t kMaxKept = 10'000;  // bounds the memory for a file that is not a scene at all
 
+/// A string, a number or a boolean; empty for other values.
+std::string value_text(const toml::node& node) {
+    if (const auto* const text = node.as_string()) return fmt::format("\"{}\"", excerpt(text->get()));
+    if (const auto* const number = node.as_integer()) return fmt::format("{}", number->get());
+    if (const auto* const number = node.as_floating_point()) return fmt::format("{}", number->get());
+    if (const auto* const boolean = node.as_boolean()) return fmt::format("{}", boolean->get());
+    return "";
+}
+
 toml::source_position begin_of(const toml::source_region& region) {
     return region.begin ? region.begin : toml::source_position{1, 1};
 }
@@ -33,13 +42,13 @@ std::string described(const toml::node& node) {
         case toml::node_type::array:
             return fmt::format("this is a list of {}", node.as_array()->size());
         case toml::node_type::string:
-            return fmt::format("\"{}\" is a string", excerpt(node.as_string()->get()));
+            return value_text(node) + " is a string";
         case toml::node_type::integer:
-            return fmt::format("{} is an integer", node.as_integer()->get());
+            return value_text(node) + " is an integer";
         case toml::node_type::floating_point:
-            return fmt::format("{} is a number with a fraction", node.as_floating_point()->get());
+            return value_text(node) + " is a number with a fraction";
         case toml::node_type::boolean:
-            return fmt::format("{} is a boolean", node.as_boolean()->get());
+            return value_text(node) + " is a boolean";
         default:
             return "this is a date or a time";
     }
@@ -60,7 +69,7 @@ std::string Problems::file_key(std::string_view key) const {
 }
 
 void Problems::add(const toml::source_region& region, std::string_view path, std::string what,
-                   std::string remedy) {
+                   std::string remedy, std::string value) {
     const std::string key = file_key(path);
     if (problems_.size() == kMaxKept) {
         ++not_kept_;
@@ -73,7 +82,11 @@ void Problems::add(const toml::source_region& region, std::string_view path, std
     }
     const toml::source_position begin = begin_of(region);
     problems_.push_back({{is_setting(region), begin.line, begin.column},
-                         {place_of(region, path), std::move(what), std::move(remedy)}});
+                         {place_of(region, path), std::move(what), std::move(remedy), std::move(value)}});
+}
+
+void Problems::add(const toml::node& value, std::string_view key, std::string what, std::string remedy) {
+    add(value.source(), key, std::move(what), std::move(remedy), value_text(value));
 }
 
 Place Problems::place_of(const toml::source_region& region, std::string_view path) const {

@@ -36,7 +36,9 @@ class Problems {
     /// Adds a problem at `region`, which is in the file or in the setting that the value came with. Only the
     /// first problem of a key counts.
     void add(const toml::source_region& region, std::string_view key, std::string what,
-             std::string remedy = "");
+             std::string remedy = "", std::string value = "");
+    /// The same of a value.
+    void add(const toml::node& value, std::string_view key, std::string what, std::string remedy = "");
 
     /// From now on, keys of rope i are those of rope `file_index[i]` of the file.
     void set_ropes(std::vector<std::size_t> file_index) { file_index_ = std::move(file_index); }

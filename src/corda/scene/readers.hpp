@@ -111,7 +111,7 @@ struct DefProblem {
 [[nodiscard]] std::vector<DefProblem> problems_of(const GoldenDef& golden);
 
 /// Why the font of a scene does not show its texts; empty if it does.
-[[nodiscard]] std::string problem_of_texts(const Scene& scene);
+[[nodiscard]] std::optional<Problem> problem_of_texts(const Scene& scene);
 
 struct BodySize {
     std::int64_t particles = 0;

@@ -73,18 +73,18 @@ void read_bodies(const Sections& sections, const SceneSize& size, const SolverSe
 
 /// One problem for all texts that cannot be shown, at the font or else at the first of them.
 void check_texts(const Sections& sections, const Scene& scene) {
-    const std::string problem = problem_of_texts(scene);
-    if (problem.empty()) return;
+    const auto problem = problem_of_texts(scene);
+    if (!problem) return;
     auto place = sections.overlay.find("font");
     const auto look = [&](const TableReader& table, std::string_view key) {
         const auto text = place ? std::nullopt : table.find(key);
-        if (text && !view::missing_glyphs({text->as<std::string>()}, "", "").empty()) place = text;
+        if (text && view::missing_glyphs({text->as<std::string>()}, "", "")) place = text;
     };
     look(sections.overlay, "title");
     for (const TableReader& text : sections.overlay.tables("texts")) look(text, "text");
     for (const TableReader& rope : sections.ropes) look(rope, "label");
     for (const TableReader& net : sections.nets) look(net, "label");
-    place->add_problem(problem);
+    place->add_problem(problem->what, problem->remedy);
 }
 
 [[noreturn]] void fail_io(const std::string& path, int reason) {

@@ -39,19 +39,20 @@ std::optional<Rational> nearest_fraction(double fps) {
     return std::nullopt;
 }
 
-std::variant<Rational, std::string> rate_from_number(double fps) {
-    if (!std::isfinite(fps)) return fmt::format("{} is not a finite number", fps);
+std::variant<Rational, Problem> rate_from_number(double fps) {
+    if (!std::isfinite(fps)) return Problem{{}, fmt::format("{} is not a finite number", fps), {}};
     if (std::abs(fps) > static_cast<double>(Rational::kMaxPart) / 1000.0)
-        return fmt::format("{} is out of range", fps);
+        return Problem{{}, fmt::format("{} is out of range", fps), {}};
     if (fps == std::floor(fps)) return Rational{static_cast<std::int64_t>(fps), 1};
-    if (const auto meant = rounded_fraction(fps))
-        return fmt::format("{} is not exact; write \"{}\"", fps, meant->text());
+    const auto inexact = [fps](const std::optional<Rational>& meant) {
+        return Problem{
+            {}, fmt::format("{} is not exact", fps), meant ? fmt::format("write \"{}\"", meant->text()) : ""};
+    };
+    if (const auto meant = rounded_fraction(fps)) return inexact(meant);
     // A decimal of up to three digits is a number of thousandths.
     const double thousandths = std::round(1000.0 * fps);
     if (thousandths / 1000.0 == fps) return Rational::reduced(static_cast<std::int64_t>(thousandths), 1000);
-    const auto fraction = nearest_fraction(fps);
-    return fraction ? fmt::format("{} is not exact; write \"{}\"", fps, fraction->text())
-                    : fmt::format("{} is not exact", fps);
+    return inexact(nearest_fraction(fps));
 }
 
 /// A number in decimal digits; std::nullopt for any other text.
@@ -65,12 +66,12 @@ std::optional<double> decimal(std::string_view text) {
 
 }  // namespace
 
-std::variant<Rational, std::string> read_rate(const toml::node& node) {
+std::variant<Rational, Problem> read_rate(const toml::node& node) {
     if (node.is_number()) return rate_from_number(number_of(node));
     const std::string& text = node.as_string()->get();
     if (const auto rate = Rational::parse(text)) return *rate;
     if (const auto fps = decimal(text); fps && *fps > 0.0) return rate_from_number(*fps);
-    return fmt::format("\"{}\" is not a fraction", excerpt(text));
+    return Problem{{}, fmt::format("\"{}\" is not a fraction", excerpt(text)), {}};
 }
 
 std::optional<Value> TableReader::find(std::string_view key) const {

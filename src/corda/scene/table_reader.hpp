@@ -21,7 +21,7 @@ namespace corda::scene {
 /// Frames per second from a number of up to three decimals, which is exact, or a fraction as text; otherwise
 /// the problem with it. Numbers that round a broadcast rate or a third, such as 29.97 and 16.667, are
 /// refused. The node is a number or text.
-[[nodiscard]] std::variant<Rational, std::string> read_rate(const toml::node& node);
+[[nodiscard]] std::variant<Rational, Problem> read_rate(const toml::node& node);
 
 template <class T>
 inline constexpr bool kIsVector = false;
@@ -71,7 +71,7 @@ class Value {
     }
 
     void add_problem(std::string what, std::string remedy = "") const {
-        problems_->add(node_->source(), path_, std::move(what), std::move(remedy));
+        problems_->add(*node_, path_, std::move(what), std::move(remedy));
     }
     [[nodiscard]] Place place() const { return problems_->place_of(node_->source(), path_); }
 

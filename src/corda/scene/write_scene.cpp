@@ -332,14 +332,14 @@ void check_definitions(const Scene& scene) {
     }
     const auto check_all = [&](std::string_view section, const auto& def, const auto&... more) {
         for (const DefProblem& one : problems_of(def, more...))
-            problems.add({}, dotted(section, one.key), one.what, one.remedy);
+            problems.add(toml::source_region{}, dotted(section, one.key), one.what, one.remedy);
     };
     check_all("video", scene.video);
     for (std::size_t i = 0; i < scene.overlay.texts.size(); ++i)
         check_all(fmt::format("overlay.texts[{}]", i), scene.overlay.texts[i]);
     check_all("overlay", scene.overlay, scene.ropes);
-    if (const std::string problem = problem_of_texts(scene); !problem.empty())
-        problems.add({}, "overlay.font", problem);
+    if (const auto problem = problem_of_texts(scene))
+        problems.add(toml::source_region{}, "overlay.font", problem->what, problem->remedy);
     check_all("style", scene.style, scene.ropes, scene.nets);
     check_all("camera", scene.camera, scene.ropes.size() + scene.nets.size());
     if (scene.golden) {

@@ -78,9 +78,13 @@ constexpr int kMinSidePx = 160;
 
 /// A problem as the page shows it, which need not name the file at `path`.
 Json json_of(Problem problem, const std::string& path) {
-    Json json = {{"line", nullptr}, {"column", nullptr}};
+    Json json = {{"line", nullptr},
+                 {"column", nullptr},
+                 {"key", printable(problem.place.key)},
+                 {"value", printable(problem.value)}};
     if (problem.place.source == path) {
-        if (problem.place.line > 0) json = {{"line", problem.place.line}, {"column", problem.place.column}};
+        if (problem.place.line > 0)
+            json.update({{"line", problem.place.line}, {"column", problem.place.column}});
         problem.place = {.source = {}, .key = problem.place.key};
     }
     json["text"] = printable_lines(problem.text());

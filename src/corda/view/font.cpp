@@ -155,25 +155,28 @@ bool needs_shaping(char32_t character) {
     });
 }
 
-std::string missing_glyphs(const std::vector<std::string>& texts, const std::string& path,
-                           const std::string& name) {
+std::optional<Problem> missing_glyphs(const std::vector<std::string>& texts, const std::string& path,
+                                      const std::string& name) {
     std::string all;
     for (const std::string& text : texts) all += text;
-    if (all.empty() && path.empty()) return "";
+    if (all.empty() && path.empty()) return std::nullopt;
     std::string shaped;
     std::string others;
     for (const char32_t character : Font(path).missing(all)) {
         std::string& names = needs_shaping(character) ? shaped : others;
         names += fmt::format("{}U+{:04X}", names.empty() ? "" : ", ", static_cast<std::uint32_t>(character));
     }
-    std::string problem;
+    if (shaped.empty() && others.empty()) return std::nullopt;
+    Problem problem{{}, "", "leave these characters out"};
     if (!shaped.empty())
-        problem = fmt::format("the letters of {} change next to others, which is not done; ", shaped);
-    if (!others.empty())
-        problem += fmt::format(
-            "{} has no {}; name a font that has all characters (overlay.font = \"file.ttf\"), or ",
-            path.empty() ? "DejaVu Sans" : fmt::format("'{}'", name), others);
-    return problem.empty() ? "" : problem + "leave these characters out";
+        problem.what = fmt::format("the letters of {} change next to others, which is not done", shaped);
+    if (!others.empty()) {
+        problem.what += fmt::format("{}{} has no {}", shaped.empty() ? "" : "; ",
+                                    path.empty() ? "DejaVu Sans" : fmt::format("'{}'", name), others);
+        problem.remedy =
+            "name a font that has all characters (overlay.font = \"file.ttf\"), or " + problem.remedy;
+    }
+    return problem;
 }
 
 std::u32string Font::missing(std::string_view utf8) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -65,8 +66,8 @@ class Font {
 
 /// Why texts cannot be shown, with a remedy: "DejaVu Sans has no U+6F22, U+5B57; ...". Empty if they can.
 /// `path`: of their font, as FontFile; `name`: that file in messages. Throws as FontFile.
-[[nodiscard]] std::string missing_glyphs(const std::vector<std::string>& texts, const std::string& path,
-                                         const std::string& name);
+[[nodiscard]] std::optional<Problem> missing_glyphs(const std::vector<std::string>& texts,
+                                                    const std::string& path, const std::string& name);
 
 // Sizes of text as shares of the em.
 inline constexpr double kAscent = 0.76;   ///< of DejaVu's capitals

@@ -146,20 +146,28 @@ TEST(SceneProblems, AreFieldsUntilTheyArePrinted) {
             static_cast<void>(parse_scene(toml, "swing.toml", settings));
         } catch (const Error& error) {
             std::vector<std::string> fields;
-            for (const auto& [place, what, remedy] : error.problems())
-                fields.push_back(fmt::format("{}|{}|{}|{}|{}|{}", place.source, place.line, place.column,
-                                             place.key, what, remedy));
+            for (const auto& [place, what, remedy, value] : error.problems())
+                fields.push_back(fmt::format("{}|{}|{}|{}|{}|{}|{}", place.source, place.line, place.column,
+                                             place.key, value, what, remedy));
             return fields;
         }
         return std::vector<std::string>();
     };
     EXPECT_THAT(fields_of(rope_with("masss = 1\n"), {"rope[5].mass=1", "world.drag=-1"}),
-                ElementsAre("swing.toml|4|1|rope[0].masss|unknown key \"masss\"|did you mean \"mass\"?",
-                            "--set rope[5].mass=1|0|0|rope|index 5 is out of range; the list has 1|give 0",
-                            StartsWith("--set world.drag=-1|0|0|world.drag|-1 is not >= 0|give ")));
+                ElementsAre("swing.toml|4|1|rope[0].masss||unknown key \"masss\"|did you mean \"mass\"?",
+                            "--set rope[5].mass=1|0|0|rope||index 5 is out of range; the list has 1|give 0",
+                            StartsWith("--set world.drag=-1|0|0|world.drag|-1|-1 is not >= 0|give ")));
+    EXPECT_THAT(fields_of(rope_with(""), {"video.fps=29.97", "style.theme=\"x\""}),
+                testing::UnorderedElementsAre(
+                    StartsWith("--set video.fps=29.97|0|0|video.fps|29.97|29.97 is not exact|write "
+                               "\"30000/1001\"; give "),
+                    StartsWith("--set style.theme=\"x\"|0|0|style.theme|\"x\"|")));
+    EXPECT_THAT(fields_of(rope_with(""), {"overlay.title=\"\u6f22\""}),
+                ElementsAre(StartsWith("--set overlay.title=\"\u6f22\"|0|0|overlay.title|\"\u6f22\"|"
+                                       "DejaVu Sans has no U+6F22|name a font ")));
     EXPECT_THAT(fields_of("schema = = 1\n", {}), ElementsAre(StartsWith("swing.toml|1|")));
     EXPECT_THAT(fields_of(rope_with(""), {"mass"}),
-                ElementsAre(StartsWith("--set mass|0|0||there is no '='|")));
+                ElementsAre(StartsWith("--set mass|0|0|||there is no '='|")));
 }
 
 TEST(SceneProblems, OfSyntaxStandAlone) {

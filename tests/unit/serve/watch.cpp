@@ -109,6 +109,7 @@ TEST_F(WatchTest, KeepsTheLastGoodFilmBesideAnError) {
     ASSERT_EQ(bad["problems"].size(), 1U);
     EXPECT_EQ(bad["problems"][0]["line"], 5);
     EXPECT_EQ(bad["problems"][0]["column"], 21);
+    EXPECT_THAT(bad["problems"][0]["key"].get<std::string>(), testing::StartsWith("rope[0]"));
     EXPECT_THAT(bad["problems"][0]["text"], HasSubstr("did you mean \"length\"?"));
     EXPECT_EQ(picture(3, good["film"]["number"]).width(), 320);
     const Json again = save(kScene);

@@ -49,16 +49,16 @@ TEST(Fonts, AreReadFromFiles) {
 }
 
 TEST(Fonts, NameAllThatTheyLackAtOnce) {
-    EXPECT_EQ(missing_glyphs({"", ""}, "", ""), "");
-    EXPECT_EQ(missing_glyphs({"a", "φ"}, "", ""), "");
-    EXPECT_EQ(missing_glyphs({"漢a", "漢字"}, "", ""),
+    EXPECT_FALSE(missing_glyphs({"", ""}, "", ""));
+    EXPECT_FALSE(missing_glyphs({"a", "φ"}, "", ""));
+    EXPECT_EQ(missing_glyphs({"漢a", "漢字"}, "", "")->text(),
               "DejaVu Sans has no U+6F22, U+5B57; name a font that has all characters (overlay.font = "
               "\"file.ttf\"), or leave these characters out");
-    EXPECT_THAT(missing_glyphs({"漢"}, kSerif, "serif.ttf"),
+    EXPECT_THAT(missing_glyphs({"漢"}, kSerif, "serif.ttf")->text(),
                 testing::StartsWith("'serif.ttf' has no U+6F22;"));
     // DejaVu Sans has the Arabic letters.
     EXPECT_EQ(
-        missing_glyphs({"world \u0633\u0644"}, "", ""),
+        missing_glyphs({"world \u0633\u0644"}, "", "")->text(),
         "the letters of U+0633, U+0644 change next to others, which is not done; leave these characters "
         "out");
     for (const char32_t character : {0x05d0, 0x0628, 0x0915, 0x0e01}) EXPECT_TRUE(needs_shaping(character));

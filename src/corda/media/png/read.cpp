@@ -165,7 +165,9 @@ void open_job(ReadJob& job, const std::string& path) {
         head.resize(count + std::fread(&head[count], 1, head.size() - count, job.file));
         const media::ForeignKind* const kind = media::foreign_kind(head);
         if (kind == nullptr) fail_png(path, "it does not begin like a PNG");
-        throw_error(ExitCode::kIo, "cannot read PNG '{}': it is {}; {}", path, kind->words, kind->remedy);
+        throw Error(ExitCode::kIo, Problem{{},
+                                           fmt::format("cannot read PNG '{}': it is {}", path, kind->words),
+                                           std::string(kind->remedy)});
     }
     job.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, on_read_error, on_read_warning);
     if (job.png != nullptr) job.info = png_create_info_struct(job.png);
