@@ -304,7 +304,7 @@ std::optional<Loads> LoadMeter::of(const System& system, const State& state,
         fy_n_[b] -= pull_n.y;
         loads.largest_tension_n = std::max(loads.largest_tension_n, std::abs(tension_n[k]));
     }
-    if (bends_) bends_->add_bend_forces(state.x_m.data(), state.y_m.data(), fx_n_.data(), fy_n_.data());
+    if (bends_) bends_->add_bend_forces({state.x_m.data(), state.y_m.data()}, {fx_n_.data(), fy_n_.data()});
     for (std::size_t i = 0; i < system.particle_count(); ++i) {
         if (system.is_pinned(i)) loads.pin_force_n = std::max(loads.pin_force_n, length(fx_n_[i], fy_n_[i]));
     }

@@ -72,13 +72,8 @@ CORDA_INLINE bool find_angles(SeriesArrays& a, double t) {
 template <bool kSmall>
 CORDA_INLINE void turn(SeriesArrays& a, double* to_c, double* to_s) {
     for (std::size_t i = 0; i < kLanes * a.blocks; i += kLanes) {
-        Four turn_c;
-        Four turn_s;
-        if constexpr (kSmall) {
-            cosine_sine_of_small(four(a.load + i), turn_c, turn_s);
-        } else {
-            cosine_sine(four(a.load + i), turn_c, turn_s);
-        }
+        const Four& angle = four(a.load + i);
+        const auto [turn_c, turn_s] = kSmall ? cosine_sine_of_small(angle) : cosine_sine(angle);
         const Four c = four(a.c + i) * turn_c - four(a.s + i) * turn_s;
         const Four s = four(a.s + i) * turn_c + four(a.c + i) * turn_s;
         // The inverse length, because the length differs from 1 by rounding alone.

@@ -51,7 +51,8 @@ void ElasticDynamics::measure() {
     for (const double mass_kg : mass_kg_) energy_offset_j_ += mass_kg * forces_.potential_j_kg(origin_m_);
     const double* const y = initial_state_.data();
     std::vector<double> force_n(2 * count_, 0.0);
-    frequency_1_s_ = std::sqrt(elastic_.add_forces(y, y + count_, force_n.data(), force_n.data() + count_));
+    frequency_1_s_ =
+        std::sqrt(elastic_.add_forces({y, y + count_}, {force_n.data(), force_n.data() + count_}));
     double fastest_m_s = 0.0;
     double acceleration_m_s2 = 0.0;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -79,7 +80,7 @@ void ElasticDynamics::derivative(const double* y, double* slope) {
     const double* const vy = y + 3 * count_;
     std::copy_n(vx, 2 * count_, slope);
     std::fill_n(slope_vx, 2 * count_, 0.0);
-    elastic_.add_forces(y, y + count_, slope_vx, slope_vy);
+    elastic_.add_forces({y, y + count_}, {slope_vx, slope_vy});
     const double* const weight = inverse_mass_1_kg_.data();
     const double* const falls = falls_.data();
     const Vec2 uniform_m_s2 = forces_.uniform_m_s2();

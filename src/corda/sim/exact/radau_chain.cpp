@@ -35,28 +35,38 @@ constexpr double kMaxTurn = 0.5 * kSmallAngle;
 /// Cost of an iteration per link, in updates of count_work().
 constexpr std::uint64_t kUpdatesPerIteration = 1;
 
-/// Turns joints from those of the step's start to those of a stage, times the inverse mass.
-CORDA_AVX2_CLONES void turn_joints(Index links, const double* __restrict joint_c,
-                                   const double* __restrict joint_s, const double* __restrict inverse_mass,
-                                   const double* __restrict turn, double* __restrict wc,
-                                   double* __restrict ws) {
+/// Cosines and sines, one per link or joint.
+template <class Number>
+struct Directions {
+    Number* c;
+    Number* s;
+};
+
+/// Turns joints from those of the step's start to those of a stage, times the inverse mass. No arrays
+/// overlap.
+CORDA_AVX2_CLONES void turn_joints(Index links, Directions<const double> joint,
+                                   const double* __restrict inverse_mass, const double* __restrict turn,
+                                   Directions<double> to) {
+    const double* __restrict const joint_c = joint.c;
+    const double* __restrict const joint_s = joint.s;
+    double* __restrict const wc = to.c;
+    double* __restrict const ws = to.s;
     for (Index j = 1; j < links; ++j) {
-        double c;
-        double s;
-        cosine_sine_of_small(turn[j + 1] - turn[j], c, s);
+        const auto [c, s] = cosine_sine_of_small(turn[j + 1] - turn[j]);
         wc[j] = inverse_mass[j] * (joint_c[j] * c - joint_s[j] * s);
         ws[j] = inverse_mass[j] * (joint_s[j] * c + joint_c[j] * s);
     }
 }
 
-/// Turns directions by small angles.
-CORDA_AVX2_CLONES void turn_links(Index links, const double* __restrict turn, const double* __restrict c,
-                                  const double* __restrict s, double* __restrict to_c,
-                                  double* __restrict to_s) {
+/// Turns directions by small angles. No arrays overlap.
+CORDA_AVX2_CLONES void turn_links(Index links, const double* __restrict turn, Directions<const double> from,
+                                  Directions<double> to) {
+    const double* __restrict const c = from.c;
+    const double* __restrict const s = from.s;
+    double* __restrict const to_c = to.c;
+    double* __restrict const to_s = to.s;
     for (Index i = 0; i < links; ++i) {
-        double turn_c;
-        double turn_s;
-        cosine_sine_of_small(turn[i], turn_c, turn_s);
+        const auto [turn_c, turn_s] = cosine_sine_of_small(turn[i]);
         const double x = c[i] * turn_c - s[i] * turn_s;
         const double y = s[i] * turn_c + c[i] * turn_s;
         // The inverse length, because the length differs from 1 by rounding alone.
@@ -193,8 +203,8 @@ void predict(RadauChain& r) {
 
 void find_residuals(RadauChain& r) {
     for (Index k = 0; k < RadauChain::kStages; ++k) {
-        turn_joints(r.links, r.joint_c.data(), r.joint_s.data(), r.inverse_mass_1_kg.data(), r.turn[k].data(),
-                    r.wc[k].data(), r.ws[k].data());
+        turn_joints(r.links, {r.joint_c.data(), r.joint_s.data()}, r.inverse_mass_1_kg.data(),
+                    r.turn[k].data(), {r.wc[k].data(), r.ws[k].data()});
     }
     residuals(r);
     for (Index k = 0; k < RadauChain::kStages; ++k) {
@@ -213,8 +223,8 @@ Matrix matrix_of(const RadauChain& r) {
 
 void factorise(RadauChain& r) {
     constexpr Index kMiddle = 1;
-    turn_joints(r.links, r.joint_c.data(), r.joint_s.data(), r.inverse_mass_1_kg.data(),
-                r.turn[kMiddle].data(), r.matrix_wc.data(), r.matrix_ws.data());
+    turn_joints(r.links, {r.joint_c.data(), r.joint_s.data()}, r.inverse_mass_1_kg.data(),
+                r.turn[kMiddle].data(), {r.matrix_wc.data(), r.matrix_ws.data()});
     r.matrix_tension = r.tension[kMiddle];
     const double per_step = 1.0 / r.step_s;
     for (Index i = 1; i <= r.links; ++i) {
@@ -346,7 +356,7 @@ void accept(RadauChain& r) {
     std::swap(r.old_c, r.c);
     std::swap(r.old_s, r.s);
     r.turned = r.turn[2];
-    turn_links(r.links + 2, r.turned.data(), r.old_c.data(), r.old_s.data(), r.c.data(), r.s.data());
+    turn_links(r.links + 2, r.turned.data(), {r.old_c.data(), r.old_s.data()}, {r.c.data(), r.s.data()});
     for (Index i = 1; i <= r.links; ++i) {
         double omega[RadauChain::kStages];
         for (Index k = 0; k < RadauChain::kStages; ++k)
@@ -425,7 +435,7 @@ void interpolate(RadauChain& r, double time_s, double* y) {
         r.across[i + 1] = x * (d0 + x * (0.5 * e0 + x * (p3 + x * (p4 + x * p5))));
         omega[i] = (d0 + x * (e0 + x * (3.0 * p3 + x * (4.0 * p4 + x * (5.0 * p5))))) / h;
     }
-    turn_links(r.links, &r.across[1], &r.old_c[1], &r.old_s[1], c, c + r.link_stride);
+    turn_links(r.links, &r.across[1], {&r.old_c[1], &r.old_s[1]}, {c, c + r.link_stride});
 }
 
 }  // namespace

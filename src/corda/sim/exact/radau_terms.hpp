@@ -97,9 +97,7 @@ struct Pull {
 
 /// That of the uniform acceleration once the link, which led along (c, s), has turned.
 inline Pull pull_of(Vec2 uniform_m_s2, double c, double s, double turn) {
-    double turn_c;
-    double turn_s;
-    cosine_sine_of_small(turn, turn_c, turn_s);
+    const auto [turn_c, turn_s] = cosine_sine_of_small(turn);
     const Vec2 direction{c * turn_c - s * turn_s, s * turn_c + c * turn_s};
     return {dot(uniform_m_s2, direction), dot(uniform_m_s2, left_of(direction))};
 }

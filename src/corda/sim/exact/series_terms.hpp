@@ -45,44 +45,51 @@ CORDA_INLINE void shift_down(const Four& here, const Four& after, Four& result) 
 /// For angles below this, cosine_sine() uses the polynomials alone.
 inline constexpr double kSmallAngle = 0.78;
 
+/// Of one or four angles.
+template <class X>
+struct CosineSine {
+    X cosine;
+    X sine;
+};
+
 /// Cosine and sine of one or four angles below kSmallAngle, with the bits of cosine_sine().
 template <class X>
-CORDA_INLINE void cosine_sine_of_small(const X& x, X& cosine, X& sine) {
+CORDA_INLINE CosineSine<X> cosine_sine_of_small(const X& x) {
     const X z = x * x;
-    sine = x + x * z *
-                   (-1.66666666666666324348e-01 +
-                    z * (8.33333333332248946124e-03 +
-                         z * (-1.98412698298579493134e-04 +
-                              z * (2.75573137070700676789e-06 +
-                                   z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)))));
-    cosine = 1.0 - 0.5 * z +
-             z * z *
-                 (4.16666666666666019037e-02 +
-                  z * (-1.38888888888741095749e-03 +
-                       z * (2.48015872894767294178e-05 +
-                            z * (-2.75573143513906633035e-07 +
-                                 z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
+    const X sine =
+        x + x * z *
+                (-1.66666666666666324348e-01 +
+                 z * (8.33333333332248946124e-03 +
+                      z * (-1.98412698298579493134e-04 +
+                           z * (2.75573137070700676789e-06 +
+                                z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)))));
+    const X cosine =
+        1.0 - 0.5 * z +
+        z * z *
+            (4.16666666666666019037e-02 +
+             z * (-1.38888888888741095749e-03 +
+                  z * (2.48015872894767294178e-05 +
+                       z * (-2.75573143513906633035e-07 +
+                            z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
+    return {cosine, sine};
 }
 
 /// Cosine and sine of angles up to about 1e5, good to the last digit, from +, - and * alone. Source: the
 /// polynomials of fdlibm (Sun Microsystems 1993), k_cos.c and k_sin.c, after a whole number of right angles
 /// is subtracted in two parts.
-CORDA_INLINE void cosine_sine(const Four& angle, Four& cosine, Four& sine) {
+CORDA_INLINE CosineSine<Four> cosine_sine(const Four& angle) {
     constexpr double kRounds = 0x1.8p+52;  // a sum with it has no digits after the point
     const Four turns = angle * 6.36619772367581382433e-01 + kRounds;
     const FourBits quarter = reinterpret_cast<FourBits>(turns);
     const Four whole = turns - kRounds;
     const Four x = (angle - whole * 1.57079632673412561417e+00) - whole * 6.07710050650619224932e-11;
-    Four c;
-    Four s;
-    cosine_sine_of_small(x, c, s);
+    const auto [c, s] = cosine_sine_of_small(x);
     const FourBits c_bits = reinterpret_cast<FourBits>(c);
     const FourBits s_bits = reinterpret_cast<FourBits>(s);
     const FourBits odd = -(quarter & 1);  // all bits, or none
     const FourBits cosine_bits = ((~odd & c_bits) | (odd & s_bits)) ^ (((quarter + 1) & 2) << 62);
     const FourBits sine_bits = ((~odd & s_bits) | (odd & c_bits)) ^ ((quarter & 2) << 62);
-    cosine = reinterpret_cast<Four>(cosine_bits);
-    sine = reinterpret_cast<Four>(sine_bits);
+    return {reinterpret_cast<Four>(cosine_bits), reinterpret_cast<Four>(sine_bits)};
 }
 
 }  // namespace corda::sim

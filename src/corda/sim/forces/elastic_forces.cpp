@@ -108,31 +108,30 @@ void ElasticForces::bound_frequencies(const double* inverse_mass_1_kg, std::size
     joint_square_frequency_ = largest(sum_n_m);
 }
 
-double ElasticForces::add_forces(const double* x_m, const double* y_m, double* fx_n, double* fy_n) const {
+double ElasticForces::add_forces(Components<const double> at_m, Components<double> force_n) const {
     // |T| / d over 1 / (C l) is |1 - l / d|: more than 1 only if d < l / 2.
     double shortest = 0.5;  // d / l
     for (const Spring& spring : springs_) {
-        const Along bar = along(x_m, y_m, spring.a, spring.b);
+        const Along bar = along(at_m.x, at_m.y, spring.a, spring.b);
         const double stretch_m = std::max(bar.length_m - spring.rest_m, spring.least_stretch_m);
         const double tension_n = spring.stiffness_n_m * stretch_m;
         shortest = std::min(shortest, 1.0 + stretch_m / spring.rest_m);
-        fx_n[spring.a] += tension_n * bar.x;
-        fy_n[spring.a] += tension_n * bar.y;
-        fx_n[spring.b] -= tension_n * bar.x;
-        fy_n[spring.b] -= tension_n * bar.y;
+        force_n.x[spring.a] += tension_n * bar.x;
+        force_n.y[spring.a] += tension_n * bar.y;
+        force_n.x[spring.b] -= tension_n * bar.x;
+        force_n.y[spring.b] -= tension_n * bar.y;
     }
     const double push = 1.0 / std::max(shortest, kMinLengthShare) - 1.0;
-    return push * spring_square_frequency_ + add_bend_forces(x_m, y_m, fx_n, fy_n);
+    return push * spring_square_frequency_ + add_bend_forces(at_m, force_n);
 }
 
-double ElasticForces::add_bend_forces(const double* x_m, const double* y_m, double* fx_n,
-                                      double* fy_n) const {
+double ElasticForces::add_bend_forces(Components<const double> at_m, Components<double> force_n) const {
     // The second derivatives of k (1 - cos) are k cos times the squares of the angle's first derivatives and
     // k sin times its second ones, which are no larger; both grow with the inverse square of the lengths.
     double sharpest = 0.0;
     for (const Joint& joint : joints_) {
-        const Along u = along(x_m, y_m, joint.a, joint.b);
-        const Along v = along(x_m, y_m, joint.b, joint.c);
+        const Along u = along(at_m.x, at_m.y, joint.a, joint.b);
+        const Along v = along(at_m.x, at_m.y, joint.b, joint.c);
         const double sine = u.x * v.y - u.y * v.x;
         const double cosine = u.x * v.x + u.y * v.y;
         const double shrink = std::min(
@@ -140,12 +139,12 @@ double ElasticForces::add_bend_forces(const double* x_m, const double* y_m, doub
         sharpest = std::max(sharpest, (std::abs(cosine) + std::abs(sine)) * (shrink * shrink));
         const double a_n = joint.stiffness_n_m * sine * u.inverse_1_m;
         const double c_n = joint.stiffness_n_m * sine * v.inverse_1_m;
-        fx_n[joint.a] += a_n * u.y;
-        fy_n[joint.a] -= a_n * u.x;
-        fx_n[joint.c] += c_n * v.y;
-        fy_n[joint.c] -= c_n * v.x;
-        fx_n[joint.b] -= a_n * u.y + c_n * v.y;
-        fy_n[joint.b] += a_n * u.x + c_n * v.x;
+        force_n.x[joint.a] += a_n * u.y;
+        force_n.y[joint.a] -= a_n * u.x;
+        force_n.x[joint.c] += c_n * v.y;
+        force_n.y[joint.c] -= c_n * v.x;
+        force_n.x[joint.b] -= a_n * u.y + c_n * v.y;
+        force_n.y[joint.b] += a_n * u.x + c_n * v.x;
     }
     return sharpest * joint_square_frequency_;
 }

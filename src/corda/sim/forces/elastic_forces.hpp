@@ -10,6 +10,13 @@
 
 namespace corda::sim {
 
+/// The x and the y of all particles, in one array each.
+template <class Number>
+struct Components {
+    Number* x;
+    Number* y;
+};
+
 /// The conservative forces of bars that stretch and of ropes that resist bending, in Cartesian coordinates
 /// (section 3.2 of src/corda/sim/README.md). A bar of length 0 has no direction: it exerts no force, and no
 /// bend acts at its ends.
@@ -24,13 +31,13 @@ class ElasticForces {
 
     [[nodiscard]] bool empty() const { return springs_.empty() && joints_.empty(); }
 
-    /// Adds the forces at these positions to `fx_n`, `fy_n`, those on pinned particles too. Returns a bound
+    /// Adds the forces at these positions to `force_n`, those on pinned particles too. Returns a bound
     /// on the square of the largest angular frequency of small motions about the positions, 1 / s^2:
     /// Gershgorin's, the largest over all particles of the inverse mass times the sum of the stiffnesses that
     /// act on the particle, that of a bar being max(1 / (C l), |T| / d).
-    double add_forces(const double* x_m, const double* y_m, double* fx_n, double* fy_n) const;
+    double add_forces(Components<const double> at_m, Components<double> force_n) const;
     /// The same for the bends alone.
-    double add_bend_forces(const double* x_m, const double* y_m, double* fx_n, double* fy_n) const;
+    double add_bend_forces(Components<const double> at_m, Components<double> force_n) const;
 
     /// The same bound for usual states: bars no shorter than half of their rest lengths, joints bent by up to
     /// 0.2 radians.

@@ -120,8 +120,8 @@ double find_forces(RattleModel& model, const Motion& motion) {
     if (model.elastic.empty()) return 0.0;
     std::fill(model.force_x_n.begin(), model.force_x_n.end(), 0.0);
     std::fill(model.force_y_n.begin(), model.force_y_n.end(), 0.0);
-    return model.elastic.add_forces(motion.x_m.data(), motion.y_m.data(), model.force_x_n.data(),
-                                    model.force_y_n.data());
+    return model.elastic.add_forces({motion.x_m.data(), motion.y_m.data()},
+                                    {model.force_x_n.data(), model.force_y_n.data()});
 }
 
 /// Writes a trajectory's state with complete velocities to `output`, and the elastic forces there to the

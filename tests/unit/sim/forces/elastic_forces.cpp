@@ -22,7 +22,7 @@ ElasticState forces_of(const ElasticForces& elastic, const std::vector<double>& 
                        const std::vector<double>& y_m) {
     ElasticState forces{std::vector<double>(x_m.size(), 0.0), std::vector<double>(x_m.size(), 0.0), 0.0};
     forces.square_frequency =
-        elastic.add_forces(x_m.data(), y_m.data(), forces.x_n.data(), forces.y_n.data());
+        elastic.add_forces({x_m.data(), y_m.data()}, {forces.x_n.data(), forces.y_n.data()});
     return forces;
 }
 
