@@ -10,9 +10,6 @@
 namespace corda::sim {
 namespace {
 
-/// Products per update of count_work().
-constexpr std::uint64_t kProductsPerUpdate = 64;
-
 /// Corrections end when the error of every squared length is below this share of it, a few roundings. Much
 /// less is never reached; more would show as strain.
 constexpr double kExcessTolerance = 4e-15;
@@ -73,16 +70,18 @@ void analyse(BarGraph& graph) {
     graph.dy_m.assign(links.size(), 0.0);
     graph.right.setZero(count);
     graph.entries.clear();
+    graph.diagonal.clear();
     graph.matrix.resize(count, count);
     graph.matrix.setFromTriplets(triplets.begin(), triplets.end());
     graph.matrix.makeCompressed();
     for (Eigen::Index column = 0; column < count; ++column) {
         for (Eigen::SparseMatrix<double>::InnerIterator it(graph.matrix, column); it; ++it) {
+            if (it.row() == column) graph.diagonal.push_back(graph.entries.size());
             graph.entries.push_back(
                 {static_cast<std::uint32_t>(it.row()), static_cast<std::uint32_t>(column), it.value()});
         }
     }
-    graph.factors.analyzePattern(graph.matrix);
+    graph.factors.analyse(graph.matrix);
     graph.is_factorised = false;
 }
 
@@ -106,7 +105,7 @@ bool factorise(BarGraph& graph, const Motion& motion, double raise) {
         values[e] = factor * (graph.dx_m[row] * graph.dx_m[column] + graph.dy_m[row] * graph.dy_m[column]);
     }
     if (raise > 0.0) graph.matrix.diagonal() *= 1.0 + raise;
-    if (!graph.factors.factorize(graph.matrix)) return false;
+    if (!graph.factors.factorise(values)) return false;
     graph.is_factorised = true;
     graph.raise = raise;
     return true;
@@ -117,8 +116,8 @@ bool is_regular(BarGraph& graph, const Motion& motion) {
     graph.smallest_pivot = 0.0;
     if (!factorise(graph, motion, 0.0)) return false;
     double smallest = 1.0;
-    for (Eigen::Index k = 0; k < graph.matrix.cols(); ++k) {
-        const double pivot = graph.factors.pivot(k) / graph.matrix.coeff(k, k);
+    for (std::size_t k = 0; k < graph.diagonal.size(); ++k) {
+        const double pivot = graph.factors.pivot(k) / graph.matrix.valuePtr()[graph.diagonal[k]];
         if (!(pivot > kDependentPivot)) return false;  // negated, so that a NaN fails
         smallest = std::min(smallest, pivot);
     }
@@ -130,7 +129,7 @@ bool is_regular(BarGraph& graph, const Motion& motion) {
 bool solve_for(BarGraph& graph, const Motion& motion, std::span<double> right) {
     if (!is_regular(graph, motion) && !factorise(graph, motion, kLeapRaise)) return false;
     std::copy(right.begin(), right.end(), graph.right.data());
-    graph.right = graph.factors.solve(graph.right);
+    graph.factors.solve(graph.right.data());
     std::copy_n(graph.right.data(), right.size(), right.begin());
     return graph.right.allFinite();
 }
@@ -172,9 +171,8 @@ void leave_out_implied(BarGraph& graph, const Motion& start, double raise) {
     if (!factorise(graph, start, raise)) return;
     std::vector<Link> kept;
     for (std::size_t k = 0; k < graph.bars.links.size(); ++k) {
-        const auto column = static_cast<Eigen::Index>(k);
-        const bool is_implied =
-            !(graph.factors.pivot(column) > kImpliedPivot * graph.matrix.coeff(column, column));
+        const double diagonal = graph.matrix.valuePtr()[graph.diagonal[k]];
+        const bool is_implied = !(graph.factors.pivot(k) > kImpliedPivot * diagonal);
         (is_implied ? graph.implied : kept).push_back(graph.bars.links[k]);
     }
     graph.bars.links = std::move(kept);
@@ -315,64 +313,6 @@ bool cross(BarGraph& graph, CrossingMatrix& crossing, double span_s, Motion& mot
 
 }  // namespace
 
-int StoppableLdlt::scatter(const Eigen::SparseMatrix<double>& upper, int k) {
-    int top = static_cast<int>(upper.cols());
-    row_[k] = 0.0;
-    visited_by_[k] = k;
-    for (Eigen::SparseMatrix<double>::InnerIterator it(upper, k); it; ++it) {
-        int i = static_cast<int>(it.index());
-        if (i > k) continue;
-        row_[i] += it.value();
-        int length = 0;
-        for (; visited_by_[i] != k; i = m_parent[i]) {
-            pattern_[length++] = i;
-            visited_by_[i] = k;
-        }
-        while (length > 0) pattern_[--top] = pattern_[--length];
-    }
-    return top;
-}
-
-bool StoppableLdlt::factorize(const Eigen::SparseMatrix<double>& lower) {
-    const int size = static_cast<int>(lower.cols());
-    Eigen::SparseMatrix<double> upper(size, size);
-    upper.selfadjointView<Eigen::Upper>() = lower.selfadjointView<Eigen::Lower>().twistedBy(m_P);
-    row_.resize(size);
-    pattern_.resize(size);
-    visited_by_.resize(size);
-    m_diag.resize(size);
-    m_info = Eigen::NumericalIssue;
-    const int* const begin = m_matrix.outerIndexPtr();
-    int* const index = m_matrix.innerIndexPtr();
-    double* const value = m_matrix.valuePtr();
-    double* const row = row_.data();
-    for (int k = 0; k < size; ++k) {
-        int top = scatter(upper, k);
-        m_nonZerosPerCol[k] = 0;
-        std::uint64_t products = 0;
-        double pivot = row[k];
-        row[k] = 0.0;
-        for (; top < size; ++top) {
-            const int i = pattern_[top];
-            const double entry = row[i];
-            row[i] = 0.0;
-            const double factor = entry / m_diag[i];
-            const int end = begin[i] + m_nonZerosPerCol[i];
-            for (int p = begin[i]; p < end; ++p) row[index[p]] -= value[p] * entry;
-            pivot -= factor * entry;
-            index[end] = k;
-            value[end] = factor;
-            products += static_cast<std::uint64_t>(++m_nonZerosPerCol[i]);
-        }
-        m_diag[k] = pivot;
-        if (pivot == 0.0) return false;
-        count_work(1 + products / kProductsPerUpdate);
-    }
-    m_info = Eigen::Success;
-    m_factorizationIsOk = true;
-    return true;
-}
-
 BarGraph::BarGraph(const System& system) : bars(system, inverse_masses_with_taut_rows_held(system)) {
     const Motion start = Motion::start_of(system);
     analyse(*this);
@@ -406,7 +346,7 @@ bool GraphConstraints::move(const Stage& stage, Motion& motion, std::span<double
         apply(graph_, impulse.data(), motion);
         bool met = correct(graph_, stage.span_s, motion);
         for (int i = 0; i < kMaxCorrections && !met; ++i) {
-            graph_.right = graph_.factors.solve(graph_.right);
+            graph_.factors.solve(graph_.right.data());
             impulses += graph_.right;
             apply(graph_, graph_.right.data(), motion);
             met = correct(graph_, stage.span_s, motion);
@@ -432,7 +372,7 @@ bool GraphConstraints::leap(double span_s, Motion& motion) {
             graph_.right[static_cast<Eigen::Index>(k)] = 0.5 * excess;
             largest = std::max(largest, std::abs(excess) / square);
         }
-        graph_.right = graph_.factors.solve(graph_.right);
+        graph_.factors.solve(graph_.right.data());
         stand_still(motion);
         apply(graph_, graph_.right.data(), motion);
         drift(1.0, motion);
@@ -445,7 +385,7 @@ bool GraphConstraints::leap(double span_s, Motion& motion) {
     if (!factorise(graph_, motion, kLeapRaise)) return false;
     for (std::size_t k = 0; k < links.size(); ++k)
         graph_.right[static_cast<Eigen::Index>(k)] = dot(along(links[k], motion), apart(links[k], motion));
-    graph_.right = graph_.factors.solve(graph_.right);
+    graph_.factors.solve(graph_.right.data());
     apply(graph_, graph_.right.data(), motion);
     return graph_.right.allFinite();
 }

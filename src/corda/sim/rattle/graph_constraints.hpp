@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
 #include <cstdint>
@@ -9,29 +8,9 @@
 #include <vector>
 
 #include "corda/sim/rattle/constraint_solver.hpp"
+#include "corda/sim/sparse_ldlt.hpp"
 
 namespace corda::sim {
-
-/// Eigen's sparse LDL' with a factorisation that can be interrupted: that of a large net takes seconds.
-class StoppableLdlt final : public Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> {
-  public:
-    /// Factorises the matrix with this lower triangle, whose pattern has been analysed, by the operations of
-    /// Eigen's factorize() in their order (T. Davis, Algorithm 849, ACM Transactions on Mathematical Software
-    /// 31 (2005) 587). False if a pivot is 0. If it is cancelled, there are no factors.
-    [[nodiscard]] bool factorize(const Eigen::SparseMatrix<double>& lower);
-
-    /// The pivot of a row of the matrix.
-    [[nodiscard]] double pivot(Eigen::Index row) const { return m_diag[m_P.indices()[row]]; }
-
-  private:
-    /// Writes the columns of the pattern of row k of L to the end of pattern_, and that row of the matrix to
-    /// row_. Returns where the pattern begins.
-    int scatter(const Eigen::SparseMatrix<double>& upper, int k);
-
-    Eigen::VectorXd row_;
-    VectorI pattern_;
-    VectorI visited_by_;
-};
 
 /// Rigid bars and the matrix G W G' of their impulses, with its factors. Bars that others imply at the start
 /// are left out: see section 3.4 of src/corda/sim/README.md.
@@ -50,8 +29,9 @@ struct BarGraph {
     std::vector<Link> implied;
     std::vector<Entry> entries;          ///< in the order of the matrix's values
     Eigen::SparseMatrix<double> matrix;  ///< lower triangle
-    StoppableLdlt factors;
-    bool is_factorised = false;  ///< the factors are those of dx_m, dy_m and raise
+    SparseLdlt factors;
+    std::vector<std::size_t> diagonal;  ///< the values on it
+    bool is_factorised = false;         ///< the factors are those of dx_m, dy_m and raise
     double raise = 0.0;
     std::vector<double> dx_m;  ///< bar vectors at the start of a stage
     std::vector<double> dy_m;
