@@ -54,7 +54,7 @@ TEST(AutoGraph, EstimateIsTrueForAClosedRope) {
     const RopeDef rope = test::ring(12);
     const System system = build_system({&rope, 1});
     for (const double tolerance_m : {1e-2, 1e-4, 1e-7})
-        expect_true_estimate<RattleDef>(system, tolerance_m, 60);
+        expect_true_estimate<ExactDef>(system, tolerance_m, 60);
 }
 
 TEST(AutoGraph, EstimateIsTrueForANet) {

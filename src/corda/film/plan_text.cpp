@@ -157,8 +157,7 @@ std::string reason_text(const BodyPlan& plan) {
         case PlanReason::kNamed:
             return fmt::format("the scene asks for {}", method_name(plan.method));
         case PlanReason::kExact:
-            return "it has the smallest error for chains, for nets of parallelograms and triangles, and for "
-                   "bodies that stretch";
+            return "it has the smallest error for chains, nets of rigid bars and bodies that stretch";
         case PlanReason::kGraph:
             return "it keeps the bars of closed ropes and nets at their lengths";
         case PlanReason::kDependent:

@@ -176,7 +176,7 @@ class Refusal : public Error {
         kDefinition,          ///< a field is not what its declaration says
         kBarWithoutLength,    ///< all but `relaxation`: a bar whose particles coincide
         kImaginaryBars,       ///< `exact`: bars of reach > 1
-        kRigidGraph,          ///< `exact`: rigid bars that form neither an open chain nor a suitable net
+        kRigidGraph,          ///< `exact`: a closed rope of rigid links that resists bending
         kRigidStringGraph,    ///< `exact`: a string of rigid links that does not form an open chain
         kRigidString,         ///< `rattle`: a string of rigid links
         kRigidBendingString,  ///< `exact`: a string of rigid links that resists bending

@@ -10,10 +10,7 @@ namespace {
 
 constexpr const char* kOfMethods = R"(
 @shape
-points = [[0, 0], [0.5, -0.4], [0.1, -1], [-0.5, -0.5]]\nclosed = true\n[solver]\nmethod = "exact" | - | use method auto, or let the bars stretch by a compliance | exact => rattle ; exact => auto ; [solver] => compliance = 1e-3\n[solver]
-@net
-points = [[0, 0], [1, 0.1], [0.9, -1], [0, -1]]\nbars = [[0, 1], [1, 2], [2, 3], [3, 0]]\n[solver]\nmethod = "exact" | - | use method auto, or let the bars stretch by a compliance | exact => rattle ; [solver] => compliance = 1e-3\n[solver]
-points = [[0, 0], [1, 0.1], [0.9, -1], [0, -1]]\nbars = [[0, 1], [1, 2], [2, 3], [3, 0]]\n[solver]\nmethod = "exact"\n[[rope]]\nhang = { links = 4, length = 1.0 }\nstring = true | - | use method auto | exact => auto
+points = [[0, 0], [0.5, -0.4], [0.1, -1], [-0.5, -0.5]]\nclosed = true\nbending = 0.1\n[solver]\nmethod = "exact" | - | use method auto, or let the bars stretch by a compliance | exact => rattle ; exact => auto ; [solver] => compliance = 1e-3\n[solver]
 @rope
 string = true\n[solver]\nmethod = "rattle" | - | use method auto, or let the string stretch by a compliance | rattle => exact ; rattle => auto ; [solver] => compliance = 1e-3\n[solver]
 compliance = 1e-3\nbending = 1.0\n[solver]\nmethod = "relaxation" | - | remove compliance, string and bending, or use method auto | compliance = 1e-3\nbending = 1.0 => ; relaxation => exact ; relaxation => auto

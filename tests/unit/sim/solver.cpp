@@ -94,7 +94,9 @@ TEST(BodySolvers, RelaxAllBodiesTogetherWithTheBitsOfEach) {
 }
 
 TEST(BodySolvers, NameTheBodyThatAMethodRefuses) {
-    const Mixed mixed;
+    Mixed mixed;
+    mixed.ropes[2].bending_n_m2 = 1.0;
+    mixed.system = build_system(mixed.ropes);
     const MethodDef exact = ExactDef{};
     EXPECT_EQ(test::refusal_of(mixed.system, exact), Refusal::Reason::kRigidGraph);
     try {

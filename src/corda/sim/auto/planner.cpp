@@ -194,7 +194,12 @@ void record(const System& system, const WorldDef& world, const PlanDef& def, Bod
     }
 }
 
-/// Runs the trials, cheapest first, until one holds to the end, and makes it or the last one the plan.
+bool is_rigid_graph(const Body& body) {
+    return !body.is_chain && body.material.compliance_1_n == 0.0 && !body.material.is_string;
+}
+
+/// Runs the trials, cheapest first, until one holds to the end, and makes it or the last one the plan. Ends
+/// at the first trial of `exact` that diverges for a graph of rigid bars: they have come into line.
 void run_until_one_holds(const System& system, const WorldDef& world, const PlanDef& def,
                          std::vector<Trial> trials, BodyPlan& plan, Recording& recording) {
     const double end_s = def.timeline.time_s(def.timeline.size() - 1);
@@ -211,7 +216,9 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
         run_trial(system, world, def, kind, trials[i], recording, plan.passes);
         plan.trials.push_back(trials[i]);
         const std::size_t count = plan.trials.size();
-        if (trials[i].to_the_end || kind.is_last) break;
+        const bool is_in_line = trials[i].diverged && std::holds_alternative<ExactDef>(trials[i].method) &&
+                                is_rigid_graph(system.bodies.front());
+        if (trials[i].to_the_end || kind.is_last || is_in_line) break;
         const bool gives_up = can_tell_little(plan, i, trials.size(), end_s) ||
                               (count > 1 && give_up_together(plan.trials[count - 2], trials[i]));
         if (!gives_up || is_implicit(trials[i].method)) continue;
@@ -306,6 +313,15 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
         start.include({0.0, system.x_m, system.y_m});
         run_until_one_holds(system, world, def, exact_trials(system, world, def.tolerance_m(start)), plan,
                             recording);
+        const bool is_in_line = plan.trials.back().diverged && is_rigid_graph(system.bodies.front());
+        if (!is_in_line || refusal_of(RattleDef{})) return plan;
+        // `rattle` passes lines of bars.
+        const BodyPlan stopped = std::move(plan);
+        plan = {};
+        plan.passes = stopped.passes;
+        plan.reason = PlanReason::kGraph;
+        run_until_one_holds(system, world, def, graph_trials(system, world, def), plan, recording);
+        plan.trials.insert(plan.trials.begin(), stopped.trials.begin(), stopped.trials.end());
         return plan;
     }
     if (is_rigid_chain(system.bodies.front()) ||

@@ -10,6 +10,7 @@
 
 #include "corda/core/cancel.hpp"
 #include "corda/core/cpu.hpp"
+#include "corda/sim/exact/bar_dynamics.hpp"
 #include "corda/sim/exact/chain_dynamics.hpp"
 #include "corda/sim/exact/chain_series.hpp"
 #include "corda/sim/exact/elastic_dynamics.hpp"
@@ -55,6 +56,16 @@ void refuse_rigid_string_graph(const Body& body) {
     if (body.is_chain) return;
     throw Refusal(Refusal::Reason::kRigidStringGraph,
                   "method exact moves a string of rigid links only if it is an open chain");
+}
+
+/// In the rotations of groups of bars if these can turn independently.
+std::unique_ptr<Dynamics> make_net_dynamics(const System& system, const Forces& forces) {
+    try {
+        return std::make_unique<NetDynamics>(system, forces);
+    } catch (const Refusal& refused) {
+        if (refused.reason() != Refusal::Reason::kRigidGraph) throw;
+    }
+    return std::make_unique<BarDynamics>(system, forces);
 }
 
 /// False with drag, and for rigid strings, whose snaps lose energy.
@@ -106,8 +117,7 @@ std::unique_ptr<Exact> Exact::make(const System& system, const Forces& forces, c
                                          def.tolerance);
     }
     if (!body.material.is_string && !body.is_chain) {
-        return std::make_unique<OdePart>(system, forces, std::make_unique<NetDynamics>(system, forces),
-                                         def.tolerance);
+        return std::make_unique<OdePart>(system, forces, make_net_dynamics(system, forces), def.tolerance);
     }
     refuse_imaginary_bars(system);
     if (body.material.is_string) {

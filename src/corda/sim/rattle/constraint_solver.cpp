@@ -1,6 +1,7 @@
 #include "corda/sim/rattle/constraint_solver.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -29,6 +30,19 @@ RigidBars::RigidBars(const System& system, std::vector<double> inverse_masses)
         if (inverse_mass_1_kg[bar.a] > 0.0 || inverse_mass_1_kg[bar.b] > 0.0)
             links.push_back({bar.a, bar.b, bar.rest_m});
     }
+}
+
+std::vector<std::size_t> bars_of_links(const System& system, const RigidBars& bars) {
+    std::vector<std::size_t> bar_of_link;
+    for (const Body& body : system.bodies) {
+        for (std::size_t k = body.first_bar; k < body.first_bar + body.bar_count; ++k) {
+            const Bar& bar = system.bars[k];
+            const bool moves = bars.inverse_mass_1_kg[bar.a] > 0.0 || bars.inverse_mass_1_kg[bar.b] > 0.0;
+            if (body.material.compliance_1_n == 0.0 && moves) bar_of_link.push_back(k);
+        }
+    }
+    assert(bar_of_link.size() == bars.links.size());
+    return bar_of_link;
 }
 
 double ConstraintSolver::expected_square_frequency(const System& system, double acceleration_m_s2,
@@ -93,7 +107,7 @@ namespace {
 constexpr double kSlack = 1e-14;
 /// Rounding, as a share of the largest coordinate and, for checks with a moved start, of all lengths
 /// together.
-constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+constexpr double kRowRounding = 8.0 * std::numeric_limits<double>::epsilon();
 /// Sine of the largest angle between successive bars of a straight row, far above kSlack and rounding.
 constexpr double kSameDirection = 1e-5;
 
@@ -110,7 +124,7 @@ class Rows {
         double farthest_m = 0.0;
         for (std::size_t i = 0; i < system.particle_count(); ++i)
             farthest_m = std::max({farthest_m, std::abs(system.x_m[i]), std::abs(system.y_m[i])});
-        rounding_m_ = kRounding * (farthest_m + largest_length_m(system));
+        rounding_m_ = kRowRounding * (farthest_m + largest_length_m(system));
         for (const Bar& bar : rigid_bars(system)) {
             bars_at_[bar.a].push_back({bar.b, bar.rest_m});
             bars_at_[bar.b].push_back({bar.a, bar.rest_m});

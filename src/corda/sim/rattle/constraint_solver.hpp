@@ -54,6 +54,10 @@ struct RigidBars {
     std::vector<std::uint32_t> held;        ///< the particles of inverse mass 0
 };
 
+/// The bars of a system whose tensions are those of the links, in their order. Requires that none is left
+/// out.
+[[nodiscard]] std::vector<std::size_t> bars_of_links(const System& system, const RigidBars& bars);
+
 /// From the first particle of a link to the second: the vector d, and the relative velocity.
 [[nodiscard]] inline Vec2 along(const Link& link, const Motion& motion) {
     return {motion.x_m[link.b] - motion.x_m[link.a], motion.y_m[link.b] - motion.y_m[link.a]};

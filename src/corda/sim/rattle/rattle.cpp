@@ -72,20 +72,6 @@ void refuse_rigid_strings(const System& system) {
     }
 }
 
-/// The bars whose tensions are those of the links, in their order.
-std::vector<std::size_t> bars_of_links(const System& system, const RigidBars& bars) {
-    std::vector<std::size_t> bar_of_link;
-    for (const Body& body : system.bodies) {
-        for (std::size_t k = body.first_bar; k < body.first_bar + body.bar_count; ++k) {
-            const Bar& bar = system.bars[k];
-            const bool moves = bars.inverse_mass_1_kg[bar.a] > 0.0 || bars.inverse_mass_1_kg[bar.b] > 0.0;
-            if (body.material.compliance_1_n == 0.0 && moves) bar_of_link.push_back(k);
-        }
-    }
-    assert(bar_of_link.size() == bars.links.size());
-    return bar_of_link;
-}
-
 /// The frame interval over the smallest whole number that makes a stable step.
 double stable_step_s(const RattleModel& model, double square_frequency, double frame_interval_s) {
     const double stable_s = model.guard * model.composition.stable_omega_h / std::sqrt(square_frequency);

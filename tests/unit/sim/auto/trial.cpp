@@ -148,7 +148,8 @@ TEST(Trial, CanBeStopped) {
 }
 
 TEST(RefusalOfAMethod, HasItsReason) {
-    const RopeDef ring = test::ring(5);
+    RopeDef ring = test::ring(5);
+    ring.bending_n_m2 = 1.0;
     const System system = build_system({&ring, 1});
     EXPECT_EQ(refusal(system, WorldDef{}, ExactDef{}, 0.01).value().reason(), Refusal::Reason::kRigidGraph);
     EXPECT_FALSE(refusal(system, WorldDef{}, RattleDef{}, 0.01).has_value());
