@@ -76,13 +76,13 @@ bool is_implicit(const MethodDef& method) {
 std::vector<Trial> exact_trials(const System& system, const WorldDef& world, double tolerance_m) {
     std::vector<Trial> trials;
     const TightestDigits& tightest = has_kinks(system) ? kWithKinks : kSmooth;
-    // The links of a rigid net are many times as long as its way from end to end.
+    // The links of a net are many times as long as its way from end to end.
     const Body& body = system.bodies.front();
     MotionBounds start;
     start.include({0.0, system.x_m, system.y_m});
     const Vec2 extent = start.max_m() - start.min_m();
     const bool is_rigid_net = !body.is_chain && body.material.compliance_1_n == 0.0;
-    const double wanted = tolerance_m / (is_rigid_net ? extent.x + extent.y : largest_length_m(system));
+    const double wanted = tolerance_m / (body.is_chain ? largest_length_m(system) : extent.x + extent.y);
     std::size_t digits = kMaxDigits;
     while (digits < tightest.run && kTolerance[digits] > wanted) ++digits;
     std::size_t first = kMaxDigits;
