@@ -23,6 +23,14 @@ inline RopeDef ring(int particles) {
     return rope;
 }
 
+/// The same without a pin, pushed at one particle: only `rattle` keeps its bars at their lengths.
+inline RopeDef free_ring(int particles) {
+    RopeDef rope = ring(particles);
+    rope.pinned = {};
+    rope.velocity_m_s.front() = {1.0, 0.5};
+    return rope;
+}
+
 /// A cloth of columns x rows unit masses `spacing_m` apart that hangs from the two ends of its top row, with
 /// both diagonals in every square as imaginary bars.
 inline NetDef cloth(std::uint32_t columns, std::uint32_t rows, double spacing_m) {

@@ -241,7 +241,7 @@ std::vector<Key> method_keys(std::string_view section) {
          "the position error relative to the length of the rope"},
         {section, "implicit", of(Kind::kBoolean), "", field(&ExactDef::implicit),
          "implicit steps, whose number hardly grows with that of the links at tolerances of 1e-5 and more",
-         "for ropes that hang from one pin"},
+         "for ropes that hang from pins"},
         {section, "order", one_of(order_words(), Kind::kInteger), "", field(&RattleDef::order), "the order"},
         {section, "step", number({.low = 1e-9}), "s",
          otherwise("one frame; rattle: a stable part of one",

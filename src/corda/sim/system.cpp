@@ -344,6 +344,19 @@ System build_system(std::span<const RopeDef> ropes, std::span<const NetDef> nets
 
 namespace corda::sim {
 
+std::size_t pin_count(const System& system, const Body& body) {
+    const auto first = system.inverse_mass_1_kg.begin() + static_cast<std::ptrdiff_t>(body.first_particle);
+    return static_cast<std::size_t>(
+        std::count(first, first + static_cast<std::ptrdiff_t>(body.particle_count), 0.0));
+}
+
+bool moves_as_chains(const System& system, const Body& body) {
+    constexpr std::size_t kMaxOfNet = 4;  // links of a closed rope of which two can be parallel for good
+    if (body.is_chain || body.is_net) return body.is_chain;
+    if (body.material.is_string || body.material.compliance_1_n > 0.0 || !system.bends.empty()) return false;
+    return body.link_count > kMaxOfNet && body.bar_count == body.link_count && pin_count(system, body) > 0;
+}
+
 void for_each_body(const System& system, const std::function<void(const System&, std::size_t)>& use) {
     auto bend = system.bends.begin();  // in the order of bodies, as bars are
     for (std::size_t i = 0; i < system.bodies.size(); ++i) {

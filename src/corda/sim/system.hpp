@@ -183,10 +183,10 @@ class Refusal : public Error {
         kStretchedString,     ///< `exact`: a rigid link of a string longer at the start than its rest length
         kUndecidedString,     ///< `exact`: the start does not determine which links of a string are taut
         kTautBetweenPins,     ///< a rigid rope that is straight between two pins
-        kImplicit,         ///< `exact`, implicit: a body that does not hang from one pin, or resists bending
-        kDependentBars,    ///< `rattle`: the lengths of rigid bars depend on each other
-        kMaterial,         ///< `relaxation`: compliance, a string or bending
-        kUnknownTensions,  ///< tensions are requested that the method does not know
+        kImplicit,            ///< `exact`, implicit: a body that does not hang from a pin, or resists bending
+        kDependentBars,       ///< `rattle`: the lengths of rigid bars depend on each other
+        kMaterial,            ///< `relaxation`: compliance, a string or bending
+        kUnknownTensions,     ///< tensions are requested that the method does not know
     };
 
     Refusal(Reason reason, const std::string& problem)
@@ -232,6 +232,13 @@ class MotionBounds {
 }  // namespace corda
 
 namespace corda::sim {
+
+/// Number of pinned particles of a body.
+[[nodiscard]] std::size_t pin_count(const System& system, const Body& body);
+
+/// True for a rope that is open, or of rigid links, closed and held by a pin: then it is a chain from that
+/// pin round to it again. A closed one of three or four links may move as a NetModel, and does not count.
+[[nodiscard]] bool moves_as_chains(const System& system, const Body& body);
 
 /// Calls `use` for each body in order, with a System of that body alone and the body's index. This System
 /// keeps the origin, counts particles and bars from 0 and lives only for the call. If there are several

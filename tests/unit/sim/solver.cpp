@@ -32,7 +32,7 @@ State after_2_s(const System& system, const std::vector<MethodDef>& methods) {
 struct Mixed {
     RopeDef rope = reference::straight_rope(3, 1.0, 60.0);
     RopeDef string = test::string_of({{0.0, 0.0}, {0.6, 0.0}}, {1.0});
-    RopeDef ring = test::ring(5);
+    RopeDef ring = test::free_ring(5);
     std::vector<RopeDef> ropes{rope, string, ring};
     System system = build_system(ropes);
     std::vector<MethodDef> methods{ExactDef{1e-7}, ExactDef{}, RattleDef{6, 0.01}};

@@ -81,8 +81,9 @@ std::vector<Trial> exact_trials(const System& system, const WorldDef& world, dou
     MotionBounds start;
     start.include({0.0, system.x_m, system.y_m});
     const Vec2 extent = start.max_m() - start.min_m();
-    const bool is_rigid_net = !body.is_chain && body.material.compliance_1_n == 0.0;
-    const double wanted = tolerance_m / (body.is_chain ? largest_length_m(system) : extent.x + extent.y);
+    const bool is_net = !moves_as_chains(system, body);
+    const bool is_rigid_net = is_net && body.material.compliance_1_n == 0.0;
+    const double wanted = tolerance_m / (is_net ? extent.x + extent.y : largest_length_m(system));
     std::size_t digits = kMaxDigits;
     while (digits < tightest.run && kTolerance[digits] > wanted) ++digits;
     std::size_t first = kMaxDigits;

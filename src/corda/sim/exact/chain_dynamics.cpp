@@ -211,6 +211,8 @@ void add_chain(Chains& chains, const System& system, const Body& body, std::size
     chain.runs_backwards = to < from;
     chain.link_count = chain.runs_backwards ? from - to : to - from;
     chain.first_particle = from;
+    chain.ring = body.is_chain ? 0 : body.particle_count;
+    if (chain.ring > 0) to %= chain.ring;
     chain.starts_pinned = system.is_pinned(from);
     chain.ends_pinned = system.is_pinned(to);
     if (chain.starts_pinned && chain.ends_pinned && chain.link_count == 1) return;  // it never moves
@@ -222,7 +224,7 @@ void add_chain(Chains& chains, const System& system, const Body& body, std::size
     double fastest_m_s = length_of(at(system.vx_m_s, system.vy_m_s, from));
     for (std::size_t i = 0; i < chain.link_count; ++i) {
         const std::size_t particle = chain.particle(i);
-        const std::size_t before = chain.runs_backwards ? particle : particle - 1;
+        const std::size_t before = chain.lower_particle(i);
         chains.links[before] = {chains.length_m.size(), chain.runs_backwards, true};
         chains.length_m.push_back(system.bars[body.first_bar + before - body.first_particle].rest_m);
         chains.inverse_length_1_m.push_back(1.0 / chains.length_m.back());
@@ -237,7 +239,7 @@ void add_chain(Chains& chains, const System& system, const Body& body, std::size
     chains.list.push_back(chain);
 }
 
-/// Cuts a rope from each pin to the next, and from an end to its pin.
+/// Cuts a rope from each pin to the next, and from an end to its pin; a closed one round to its first pin.
 void add_body(Chains& chains, const System& system, const Body& body) {
     const std::size_t first = body.first_particle;
     const std::size_t end = first + body.particle_count;
@@ -246,10 +248,14 @@ void add_body(Chains& chains, const System& system, const Body& body) {
         if (!system.is_pinned(i)) continue;
         chains.mass_kg[i] = 0.0;
         chains.pins.push_back({i, at(system.x_m, system.y_m, i)});
-        if (last || i > first) add_chain(chains, system, body, last ? *last : i, last ? i : first);
+        if (last || (i > first && body.is_chain))
+            add_chain(chains, system, body, last ? *last : i, last ? i : first);
         last = i;
     }
-    if (!last || *last < end - 1) add_chain(chains, system, body, last.value_or(first), end - 1);
+    if (!body.is_chain)
+        add_chain(chains, system, body, *last, body.particle_count + chains.pins.front().particle);
+    else if (!last || *last < end - 1)
+        add_chain(chains, system, body, last.value_or(first), end - 1);
 }
 
 void set_timescales(Chains& chains) {
@@ -347,8 +353,9 @@ void set_start(Chains& chains, const System& system) {
 Chains make_chains(const System& system, std::span<const Body> bodies, const Forces& forces) {
     Chains chains{.forces = forces, .mass_kg = system.mass_kg};
     chains.links.resize(system.particle_count());
+    chains.are_of_ring = !bodies.empty() && !bodies.front().is_chain;
     for (const Body& body : bodies) {
-        assert(body.is_chain);
+        assert(moves_as_chains(system, body));
         add_body(chains, system, body);
     }
     chains.bending = ChainBending(system, chains.links, chains.length_m);
@@ -485,7 +492,7 @@ void ChainDynamics::tensions(const double* y, std::vector<double>& tension_n) {
         if (chain.link_count == 0) continue;
         (bends ? find_tensions<true> : find_tensions<false>)(chains_, chain, y, scratch_);
     }
-    tension_n.assign(chains_.links.size() - 1, 0.0);
+    tension_n.assign(chains_.links.size() - (chains_.are_of_ring ? 0 : 1), 0.0);
     for (std::size_t i = 0; i < tension_n.size(); ++i)
         if (chains_.links[i].moves) tension_n[i] = scratch_.tension_n[chains_.links[i].index];
 }

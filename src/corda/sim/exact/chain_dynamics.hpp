@@ -18,6 +18,7 @@ struct Chain {
     std::size_t link_count = 0;
     std::size_t first_particle = 0;  ///< start of link 0
     bool runs_backwards = false;     ///< towards lower indices of particles
+    std::size_t ring = 0;  ///< number of particles of a closed rope; its particle 0 follows the last
     bool starts_pinned = true;
     bool ends_pinned = false;
     std::size_t first_extra = 0;     ///< index of x, y, vx, vy in a state, if the start is not pinned
@@ -26,9 +27,15 @@ struct Chain {
     double inverse_mass_1_kg = 0.0;  ///< of the first particle
     double length_m = 0.0;
     double inverse_timescale_1_s = 0.0;  ///< see Forces::inverse_timescale_1_s
-    /// The particle at the far end of a link; links are counted from the chain's first one.
+    /// The particle at the far end of a link, and the particle whose link to the next one it is; links are
+    /// counted from the chain's first one.
     [[nodiscard]] std::size_t particle(std::size_t link) const {
-        return runs_backwards ? first_particle - link - 1 : first_particle + link + 1;
+        if (runs_backwards) return first_particle - link - 1;
+        const std::size_t next = first_particle + link + 1;
+        return ring > 0 && next >= ring ? next - ring : next;
+    }
+    [[nodiscard]] std::size_t lower_particle(std::size_t link) const {
+        return runs_backwards ? particle(link) : link == 0 ? first_particle : particle(link - 1);
     }
 };
 
@@ -46,6 +53,7 @@ struct Chains {
     Forces forces;
     std::vector<Chain> list = {};
     std::vector<Pin> pins = {};
+    bool are_of_ring = false;           ///< of a closed rope
     std::vector<double> mass_kg = {};   ///< one per particle of the system; 0 if pinned
     std::vector<ChainLink> links = {};  ///< from each particle of the system to the next
     ChainBending bending = {};
@@ -77,8 +85,8 @@ struct ChainTensions {
     std::vector<double> tension_n;
 };
 
-/// `bodies`: chains of the system or parts of chains. Throws corda::Refusal for a rope that is taut between
-/// two pins.
+/// `bodies`: chains of the system or parts of chains, or the one body, a closed rope. Throws corda::Refusal
+/// for a rope that is taut between two pins.
 [[nodiscard]] Chains make_chains(const System& system, std::span<const Body> bodies, const Forces& forces);
 
 /// Adds a free particle of the system as a chain without a link. Errors of its position are measured by
@@ -118,7 +126,8 @@ class ChainDynamics final : public Dynamics {
     void positions(const double* y, State& state) const override;
     void velocities(const double* y, State& state) const override;
     [[nodiscard]] double energy_j(const double* y) const override;
-    /// Entry i belongs to the link between particle i of the system and the next one; 0 without a link.
+    /// Entry i belongs to the link between particle i of the system and the next one, in a closed rope after
+    /// the last the first; 0 without a link.
     void tensions(const double* y, std::vector<double>& tension_n) override;
 
   private:

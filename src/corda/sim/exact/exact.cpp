@@ -116,7 +116,7 @@ std::unique_ptr<Exact> Exact::make(const System& system, const Forces& forces, c
         return std::make_unique<OdePart>(system, forces, std::make_unique<ElasticDynamics>(system, forces),
                                          def.tolerance);
     }
-    if (!body.material.is_string && !body.is_chain) {
+    if (!body.material.is_string && !moves_as_chains(system, body)) {
         return std::make_unique<OdePart>(system, forces, make_net_dynamics(system, forces), def.tolerance);
     }
     refuse_imaginary_bars(system);

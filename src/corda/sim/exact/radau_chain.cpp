@@ -106,13 +106,12 @@ CORDA_AVX2_CLONES void residuals(RadauChain& r) {
     }
 }
 
-/// The bodies of a system that implicit steps can move.
+/// The bodies that implicit steps can move.
 const std::vector<Body>& bodies_of(const System& system) {
     if (ImplicitPart::can_move(system, system.bodies.front())) return system.bodies;
     throw Refusal(
         Refusal::Reason::kImplicit,
-        "implicit steps move open ropes of rigid links with one pin that neither resist bending nor "
-        "are strings");
+        "implicit steps move ropes of rigid links with a pin that neither resist bending nor are strings");
 }
 
 /// The polynomial through the values of the last step's stages at `time`, in parts of that step.
@@ -133,7 +132,7 @@ void measure_joints(RadauChain& r) {
     }
 }
 
-/// A chain of `dynamics` that starts pinned and ends free, at its initial state.
+/// A chain of `dynamics` that starts pinned, at its initial state.
 RadauChain make_radau_chain(ChainDynamics& dynamics, const System& system, const Chain& chain,
                             double tolerance) {
     const Chains& chains = dynamics.chains();
@@ -141,6 +140,7 @@ RadauChain make_radau_chain(ChainDynamics& dynamics, const System& system, const
     r.links = chain.link_count;
     r.first_link = chain.first_link;
     r.link_stride = chains.link_count();
+    r.ends_pinned = chain.ends_pinned;
     r.pull_m_s2 = chains.forces.uniform_m_s2();
     r.drag_1_s = chains.forces.drag_1_s();
     r.control = step_control(chain.inverse_timescale_1_s, tolerance);
@@ -166,15 +166,13 @@ RadauChain make_radau_chain(ChainDynamics& dynamics, const System& system, const
     dynamics.tensions(y, tension_n);
     for (Index i = 1; i <= r.links; ++i) {
         const Index link = r.first_link + i - 1;
-        const Index particle = chain.particle(i - 1);
         r.length_m[i] = chains.length_m[link];
         r.inverse_mass_1_kg[i] = chains.inverse_mass_1_kg[link];
         r.c[i] = y[link];
         r.s[i] = y[r.link_stride + link];
         r.omega[i] = y[2 * r.link_stride + link];
         r.slope[i] = slope[2 * r.link_stride + link];
-        for (RadauChain::Array& stage : r.old_tension)
-            stage[i] = tension_n[chain.runs_backwards ? particle : particle - 1];
+        for (RadauChain::Array& stage : r.old_tension) stage[i] = tension_n[chain.lower_particle(i - 1)];
     }
     measure_joints(r);
     return r;
@@ -201,6 +199,13 @@ void predict(RadauChain& r) {
     }
 }
 
+/// The pull that a pin withholds from link `i` at a stage: that at the end enters the other way round.
+Pull pull_of_pin(const RadauChain& r, Index i, Index stage) {
+    if (i == 1) return pull_of(r.pull_m_s2, r.c[1], r.s[1], r.turn[stage][1]);
+    if (i < r.links || !r.ends_pinned) return {};
+    return pull_of(-1.0 * r.pull_m_s2, r.c[i], r.s[i], r.turn[stage][i]);
+}
+
 void find_residuals(RadauChain& r) {
     for (Index k = 0; k < RadauChain::kStages; ++k) {
         turn_joints(r.links, {r.joint_c.data(), r.joint_s.data()}, r.inverse_mass_1_kg.data(),
@@ -208,11 +213,14 @@ void find_residuals(RadauChain& r) {
     }
     residuals(r);
     for (Index k = 0; k < RadauChain::kStages; ++k) {
-        const Pull here = pull_of(r.pull_m_s2, r.c[1], r.s[1], r.turn[k][1]);
-        r.across[1] += kTo[0][k] * here.across;
-        r.along[1] -= kTo[0][k] * here.along;
-        r.complex_across[1] = r.complex_across[1] + here.across * Complex{kTo[1][k], kTo[2][k]};
-        r.complex_along[1] = r.complex_along[1] - here.along * Complex{kTo[1][k], kTo[2][k]};
+        for (const Index i : {Index{1}, r.links}) {
+            const Pull here = pull_of_pin(r, i, k);
+            r.across[i] += kTo[0][k] * here.across;
+            r.along[i] -= kTo[0][k] * here.along;
+            r.complex_across[i] = r.complex_across[i] + here.across * Complex{kTo[1][k], kTo[2][k]};
+            r.complex_along[i] = r.complex_along[i] - here.along * Complex{kTo[1][k], kTo[2][k]};
+            if (!r.ends_pinned) break;
+        }
     }
 }
 
@@ -235,11 +243,10 @@ void factorise(RadauChain& r) {
     const Complex pair = per_step * kPair;
     const double square = rate * rate + r.drag_1_s * rate;
     const Complex pair_square = pair * pair + r.drag_1_s * pair;
-    Pull pull = pull_of(r.pull_m_s2, r.c[1], r.s[1], r.turn[kMiddle][1]);
     for (Index i = 1; i <= r.links; ++i) {
+        const Pull pull = pull_of_pin(r, i, kMiddle);
         matrix.eliminate(i, pull, rate, square, r.pivots.data());
         matrix.eliminate(i, pull, pair, pair_square, r.complex_pivots.data());
-        pull = {};
     }
 }
 
@@ -352,7 +359,23 @@ double buckling_1_s(const RadauChain& r) {
     return std::sqrt(fastest);
 }
 
-void accept(RadauChain& r) {
+/// Brings the end of a step of `chain` back to its pin. `y`: a state of the chains for scratch.
+void close(RadauChain& r, const Chains& chains, const Chain& chain, double* y) {
+    double* const c = y + r.first_link;
+    double* const s = c + r.link_stride;
+    double* const omega = s + r.link_stride;
+    std::copy_n(&r.c[1], r.links, c);
+    std::copy_n(&r.s[1], r.links, s);
+    std::copy_n(&r.omega[1], r.links, omega);
+    close_between_pins(chains, chain, y);
+    for (Index i = 1; i <= r.links; ++i)  // small angles
+        r.turned[i] += r.c[i] * s[i - 1] - r.s[i] * c[i - 1];
+    std::copy_n(c, r.links, &r.c[1]);
+    std::copy_n(s, r.links, &r.s[1]);
+    std::copy_n(omega, r.links, &r.omega[1]);
+}
+
+void accept(RadauChain& r, const Chains& chains, const Chain& chain, double* y) {
     std::swap(r.old_c, r.c);
     std::swap(r.old_s, r.s);
     r.turned = r.turn[2];
@@ -367,6 +390,7 @@ void accept(RadauChain& r) {
             slope_at(2, omega[0] - r.omega[i], omega[1] - r.omega[i], omega[2] - r.omega[i]) / r.step_s;
         r.omega[i] = omega[2];
     }
+    if (r.ends_pinned) close(r, chains, chain, y);
     measure_joints(r);
     std::swap(r.old_turn, r.turn);
     std::swap(r.old_tension, r.tension);
@@ -398,7 +422,7 @@ double next_factor(RadauChain& r) {
     return factor > 1.0 && factor < kEnough ? 1.0 : factor;
 }
 
-Status step(RadauChain& r) {
+Status step(RadauChain& r, const Chains& chains, const Chain& chain, double* y) {
     double most = std::numeric_limits<double>::infinity();  // no growth after a rejected step
     for (;;) {
         if (!(r.step_s > r.control.smallest_s) || r.steps == StepControl::kMaxSteps) return Status::kDiverged;
@@ -406,7 +430,7 @@ Status step(RadauChain& r) {
         r.step_s = (r.end_s + r.step_s) - r.end_s;
         const double factor = next_factor(r);
         if (factor > 0.0) {
-            accept(r);
+            accept(r, chains, chain, y);
             r.step_s = std::min(std::min(factor, most) * r.last_step_s, r.control.largest_s);
             return Status::kOk;
         }
@@ -441,15 +465,8 @@ void interpolate(RadauChain& r, double time_s, double* y) {
 }  // namespace
 
 bool ImplicitPart::can_move(const System& system, const Body& body) {
-    if (!body.is_chain || body.material.is_string || body.material.compliance_1_n > 0.0) return false;
-    const auto is_of_body = [&](std::size_t particle) {
-        return body.first_particle <= particle && particle < body.first_particle + body.particle_count;
-    };
-    std::size_t pins = 0;
-    for (std::size_t i = 0; i < system.particle_count(); ++i)
-        if (is_of_body(i) && system.is_pinned(i)) ++pins;
-    return pins == 1 &&
-           std::ranges::none_of(system.bends, [&](const Bend& bend) { return is_of_body(bend.a); });
+    return moves_as_chains(system, body) && !body.material.is_string && body.material.compliance_1_n == 0.0 &&
+           pin_count(system, body) > 0 && system.bends.empty();
 }
 
 ImplicitPart::ImplicitPart(const System& system, const Forces& forces, const ExactDef& def)
@@ -461,11 +478,16 @@ ImplicitPart::ImplicitPart(const System& system, const Forces& forces, const Exa
 
 Status ImplicitPart::reach(double time_s, State& state) {
     if (!std::isfinite(time_s)) return Status::kDiverged;
-    for (RadauChain& chain : chains_) {
+    const Chains& chains = dynamics_.chains();
+    for (std::size_t i = 0; i < chains_.size(); ++i) {
+        RadauChain& chain = chains_[i];
         while (chain.end_s < time_s) {
-            if (step(chain) == Status::kDiverged) return Status::kDiverged;
+            if (step(chain, chains, chains.list[i], output_.data()) == Status::kDiverged)
+                return Status::kDiverged;
         }
-        if (chain.steps > 0) interpolate(chain, time_s, output_.data());
+        if (chain.steps == 0) continue;
+        interpolate(chain, time_s, output_.data());
+        if (chain.ends_pinned) close_between_pins(chains, chains.list[i], output_.data());
     }
     dynamics_.positions(output_.data(), state);
     return Status::kOk;

@@ -11,7 +11,8 @@
 
 namespace corda::sim {
 
-/// A chain that hangs from a pin, integrated by implicit steps: section 12 of src/corda/sim/exact/README.md.
+/// A chain from a pin to a free end or to another pin, integrated by implicit steps: section 12 of
+/// src/corda/sim/exact/README.md.
 ///
 /// Angles, angular velocities and tensions of the links obey local equations (a differential-algebraic system
 /// of index 1), and a step solves them for all links together in O(n). Its length follows from the visible
@@ -28,6 +29,7 @@ struct RadauChain {
     std::size_t links = 0;
     std::size_t first_link = 0;
     std::size_t link_stride = 0;
+    bool ends_pinned = false;
     Vec2 pull_m_s2 = {};
     double drag_1_s = 0.0;
     StepControl control = {};
@@ -61,7 +63,7 @@ struct RadauChain {
 /// A rope whose chains take implicit steps.
 class ImplicitPart final : public Exact {
   public:
-    /// True for an open rope of rigid links with one pin that does not resist bending.
+    /// True for a rope of rigid links with a pin that does not resist bending.
     [[nodiscard]] static bool can_move(const System& system, const Body& body);
     /// Requires one body. Throws corda::Refusal for a system that it cannot move.
     ImplicitPart(const System& system, const Forces& forces, const ExactDef& def);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "benchmark/study/reference/ropes.hpp"
+#include "support/nets.hpp"
 #include "support/refusal_of.hpp"
 #include "support/solver_run.hpp"
 
@@ -34,6 +35,56 @@ TEST(Exact, DoesNotMoveAFullyPinnedRope) {
     ASSERT_TRUE(run.go(5.0));
     EXPECT_EQ(run.state().x_m, run.system().x_m);
     EXPECT_EQ(run.state().y_m, run.system().y_m);
+}
+
+/// A closed rope of 7 links pinned at `pins`, and the same one cut open at the first of them.
+void expect_ring_moves_as_cut(const std::vector<std::uint32_t>& pins, double tolerance, bool implicit) {
+    constexpr std::size_t kLinks = 7;
+    RopeDef ring = test::ring(static_cast<int>(kLinks));
+    ring.mass_kg = {1.0, 2.0, 0.5, 1.0, 3.0, 1.0, 0.2};
+    ring.velocity_m_s[4] = {1.0, 0.3};
+    ring.pinned = {pins.begin(), pins.end()};
+    RopeDef cut;
+    for (std::size_t i = 0; i <= kLinks; ++i) {
+        const std::size_t from = (pins.front() + i) % kLinks;
+        cut.points_m.push_back(ring.points_m[from]);
+        cut.mass_kg.push_back(ring.mass_kg[from]);
+        cut.velocity_m_s.push_back(ring.velocity_m_s[from]);
+    }
+    for (const std::uint32_t pin : pins) cut.pinned.push_back(pin - pins.front());
+    cut.pinned.push_back(kLinks);
+    const auto run_of = [&](const RopeDef& rope) {
+        Simulation run(build_system({&rope, 1}), WorldDef{}, ExactDef{tolerance, implicit});
+        run.set_outputs({.velocities = true, .tensions = true});
+        EXPECT_EQ(run.advance_to(0.6), Status::kOk);
+        return run;
+    };
+    const Simulation closed = run_of(ring);
+    const Simulation open = run_of(cut);
+    ASSERT_EQ(closed.state().tension_n.size(), kLinks);
+    for (std::size_t i = 0; i < kLinks; ++i) {
+        const std::size_t from = (pins.front() + i) % kLinks;
+        EXPECT_NEAR(closed.state().x_m[from], open.state().x_m[i], 1e-9) << i;
+        EXPECT_NEAR(closed.state().y_m[from], open.state().y_m[i], 1e-9) << i;
+        EXPECT_NEAR(closed.state().vx_m_s[from], open.state().vx_m_s[i], 1e-8) << i;
+        EXPECT_NEAR(closed.state().tension_n[from], open.state().tension_n[i], 1e-6) << i;
+    }
+    EXPECT_NEAR(closed.figures().loads->largest_tension_n, open.figures().loads->largest_tension_n, 1e-6);
+    EXPECT_LT(closed.diagnostics().largest.strain, 1e-12);
+}
+
+TEST(Exact, MovesAClosedRopeOnAPinAsTheRopeCutThere) {
+    for (const bool implicit : {false, true}) {
+        expect_ring_moves_as_cut({0}, 1e-10, implicit);
+        expect_ring_moves_as_cut({3}, 1e-10, implicit);
+        expect_ring_moves_as_cut({2, 5}, 1e-10, implicit);
+        expect_ring_moves_as_cut({1, 2, 4}, 1e-10, implicit);
+    }
+}
+
+TEST(ExactRefuses, AClosedRopeWithoutAPin) {
+    const RopeDef ring = test::free_ring(7);
+    EXPECT_EQ(test::refusal_of(build_system({&ring, 1}), ExactDef{}), Reason::kRigidGraph);
 }
 
 TEST(Exact, MovesBothSidesOfAPinInTheMiddleAlike) {
