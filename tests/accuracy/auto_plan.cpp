@@ -4,10 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
 
 #include "benchmark/study/reference/numbers.hpp"
 #include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/simulation.hpp"
+#include "corda/sim/solver.hpp"
+#include "support/nets.hpp"
 #include "support/plan_of.hpp"
 #include "support/reference_files.hpp"
 
@@ -150,6 +155,46 @@ TEST(AutoEstimate, IsTrueForTheSourceReportsStart) {
             EXPECT_LE(error_m, plan.error_estimate_m.value())
                 << "particle " << i << " at " << frame.time_s << " s";
         }
+    }
+}
+
+/// Work of a plan: steps of all trials' runs and first checks, in steps of the run that is drawn.
+double steps_per_run(const BodyPlan& plan) {
+    double steps = 0.0;
+    for (const Trial& trial : plan.trials)
+        steps += static_cast<double>(trial.steps) + static_cast<double>(trial.check_steps);
+    return steps / static_cast<double>(plan.trials.back().steps);
+}
+
+/// Scenes that took a hundred times as long as they should, or did not end.
+TEST(AutoPlan, EndsWithinALimitOfWork) {
+    struct Row {
+        std::string name;
+        RopeDef rope;
+        std::int64_t last_frame;
+        double steps;  ///< of the run that is drawn, at most
+        int passes;
+    };
+    std::vector<Row> rows;
+    rows.push_back({"1000 links", reference::straight_rope(1000, 1.0, 30.0), 420, 1e4, 2});
+    rows.push_back({"ring", test::ring(30), 300, 2e3, 12});
+    RopeDef bridge = reference::straight_rope(300, 1.0, 90.0);
+    for (Vec2& point : bridge.points_m) point.y = 1.2 * point.x * (point.x - 1.0);
+    bridge.pinned = {0, 300};
+    rows.push_back({"bridge", bridge, 120, 3e3, 4});
+    RopeDef string = reference::straight_rope(40, 1.0, 120.0);
+    string.rest_m.assign(40, 1.0 / 40.0);
+    string.material.is_string = true;
+    rows.push_back({"string", string, 300, 1e5, 30});
+    for (const Row& row : rows) {
+        const BodyPlan plan = plan_of(row.rope, 1e-4, row.last_frame);
+        const Trial& chosen = plan.trials.back();
+        std::printf("%s: %llu steps, %d passes, %.2g runs, %s, reached %g s\n", row.name.c_str(),
+                    static_cast<unsigned long long>(chosen.steps), plan.passes, steps_per_run(plan),
+                    method_text(plan.method).c_str(), chosen.reached_s);
+        EXPECT_LE(static_cast<double>(chosen.steps), row.steps) << row.name;
+        EXPECT_LE(plan.passes, row.passes) << row.name;
+        EXPECT_LE(steps_per_run(plan), 7.0) << row.name;
     }
 }
 

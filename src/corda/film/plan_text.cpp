@@ -54,6 +54,8 @@ std::string_view remedy(Refusal::Reason reason) {
         case Reason::kUnknownTensions:
             return "set style.color_by = \"strain\" or \"speed\", style.arrows = \"velocity\" or "
                    "\"weight\", or let the bars stretch by a compliance";
+        case Reason::kManySteps:
+            return "give less unequal masses, less bending or more compliance, or name a method";
     }
     return "";
 }
@@ -163,6 +165,12 @@ std::string reason_text(const BodyPlan& plan) {
         case PlanReason::kDependent:
             return "bars depend on each other at the start in such a way that no method can tell the true "
                    "motion; there is no estimate of the error";
+        case PlanReason::kCheapest:
+            return "its error is within the tolerance, with less work than method exact";
+        case PlanReason::kManySteps:
+            return "methods that keep bars at their lengths would take too many steps; there is no estimate "
+                   "of "
+                   "the error";
     }
     return "";
 }
@@ -194,6 +202,10 @@ std::string unknown_tensions_text(const BodyPlan& plan) {
     if (std::holds_alternative<RelaxationDef>(plan.method)) {
         return plan.reason == PlanReason::kNamed
                    ? "method relaxation has none; another solver.method gives them"
+               : plan.reason == PlanReason::kManySteps
+                   ? "auto takes method relaxation, which has none, because others would take too many "
+                     "steps; "
+                     "give less unequal masses"
                    : "auto takes method relaxation, which has none, because bars depend on each other at the "
                      "start; bend collinear bars a little, or let them stretch by a compliance";
     }

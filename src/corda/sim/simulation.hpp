@@ -132,6 +132,8 @@ enum class PlanReason {
     kExact,      ///< `exact` can move it
     kGraph,      ///< rigid bars of closed ropes or nets, for which `rattle` is made
     kDependent,  ///< the bars depend on each other at the start, in a way that no method can follow
+    kCheapest,   ///< `exact` can move it, and another method with less work is good enough
+    kManySteps,  ///< every method with an estimate would take too many steps
 };
 
 /// The reason why a net of rigid bars never moves.

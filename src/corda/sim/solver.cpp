@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "corda/core/cancel.hpp"
+#include "corda/sim/exact/chain_dynamics.hpp"
 #include "corda/sim/exact/exact.hpp"
 #include "corda/sim/exact/radau_chain.hpp"
 #include "corda/sim/rattle/rattle.hpp"
@@ -114,14 +115,18 @@ std::span<const Bar> bars_of(const System& system, const Body& body) {
     return std::span(system.bars).subspan(body.first_bar, body.bar_count);
 }
 
-/// Bound on the angular frequency in 1/s at which the tensions at t = 0 make particles of a rigid chain with
-/// one pin swing across its links: Gershgorin's, the largest over all particles of 2 w sum of T / l. T pulls
-/// what hangs on the link, of all free mass unless the first particle is the pin, as fast as gravity and the
-/// link that turns fastest together.
-double tension_frequency_1_s(const System& system, const Body& body, const Forces& forces) {
+/// Estimates of the tensions of a rigid chain with one pin: they pull what hangs on the link, of all free
+/// mass unless the first particle is the pin, as fast as gravity and the link that turns fastest together.
+/// Empty if a link leans up from the pin and might be compressed.
+std::vector<double> hanging_tensions_n(const System& system, const Body& body, const Forces& forces) {
     const std::span<const Bar> bars = bars_of(system, body);
     double fastest_m_s2 = 0.0;
+    bool is_after_pin = false;
     for (const Bar& bar : bars) {
+        is_after_pin = is_after_pin || system.is_pinned(bar.a);
+        const Vec2 along{system.x_m[bar.b] - system.x_m[bar.a], system.y_m[bar.b] - system.y_m[bar.a]};
+        const double down = dot(along, forces.uniform_m_s2());
+        if (is_after_pin ? down < 0.0 : down > 0.0) return {};
         const double speed_m_s =
             length(system.vx_m_s[bar.b] - system.vx_m_s[bar.a], system.vy_m_s[bar.b] - system.vy_m_s[bar.a]);
         fastest_m_s2 = std::max(fastest_m_s2, speed_m_s * (speed_m_s / bar.rest_m));
@@ -130,18 +135,36 @@ double tension_frequency_1_s(const System& system, const Body& body, const Force
     double all_kg = 0.0;
     for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i)
         if (!system.is_pinned(i)) all_kg += system.mass_kg[i];
-    std::vector<double> load_n_m(body.particle_count, 0.0);
+    std::vector<double> tension_n(bars.size());
     double beyond_kg = 0.0;
     for (std::size_t k = bars.size(); k-- > 0;) {
         beyond_kg += system.mass_kg[body.first_particle + k + 1];
-        const double carried_kg = hangs_from_first ? beyond_kg : all_kg;
-        const double load = carried_kg * (forces.strength_m_s2() + fastest_m_s2) / bars[k].rest_m;
-        load_n_m[k] += load;
-        load_n_m[k + 1] += load;
+        tension_n[k] = (hangs_from_first ? beyond_kg : all_kg) * (forces.strength_m_s2() + fastest_m_s2);
     }
+    return tension_n;
+}
+
+/// Bound on the angular frequency in 1/s at which the tensions at t = 0 make particles of a rigid chain swing
+/// across its links: Gershgorin's, the largest over all particles of 2 w sum of T / l. 0 if links are or
+/// might be compressed.
+double tension_frequency_1_s(const System& system, const Body& body, const Forces& forces) {
+    const std::span<const Bar> bars = bars_of(system, body);
+    std::vector<double> tension_n;
+    if (pin_count(system, body) == 1 && body.is_chain) {
+        tension_n = hanging_tensions_n(system, body, forces);
+    } else if (system.bodies.size() == 1) {
+        ChainDynamics dynamics(system, {&body, 1}, forces);
+        dynamics.tensions(dynamics.initial_state().data(), tension_n);
+        if (std::ranges::any_of(tension_n, [](double n) { return !(n >= 0.0); })) return 0.0;
+    }
+    std::vector<double> load_n_m(system.particle_count(), 0.0);
     double largest = 0.0;
-    for (std::size_t i = 0; i < load_n_m.size(); ++i)
-        largest = std::max(largest, 2.0 * system.inverse_mass_1_kg[body.first_particle + i] * load_n_m[i]);
+    for (std::size_t k = 0; k < tension_n.size(); ++k) {
+        for (const std::size_t end : {bars[k].a, bars[k].b}) {
+            load_n_m[end] += tension_n[k] / bars[k].rest_m;
+            largest = std::max(largest, 2.0 * system.inverse_mass_1_kg[end] * load_n_m[end]);
+        }
+    }
     return std::sqrt(largest);
 }
 
@@ -259,28 +282,17 @@ bool knows_tensions(const MethodDef& method) {
 
 double most_implicit_steps_1_s(const System& system, const Body& body, const Forces& forces) {
     if (!ImplicitPart::can_move(system, body)) return 0.0;
-    bool is_after_pin = false;
-    for (const Bar& bar : bars_of(system, body)) {
-        is_after_pin = is_after_pin || system.is_pinned(bar.a);
-        const Vec2 along{system.x_m[bar.b] - system.x_m[bar.a], system.y_m[bar.b] - system.y_m[bar.a]};
-        const double down = dot(along, forces.uniform_m_s2());
-        if (is_after_pin ? down < 0.0 : down > 0.0) return 0.0;
-    }
     constexpr double kFrequencyTimesStep = 5.0;  // of explicit steps
     constexpr double kCostOfExplicit =
         140.0 / 150.0;  // of a step, by implicit ones; ropes of 20 to 10 000 links
     return kCostOfExplicit * tension_frequency_1_s(system, body, forces) / kFrequencyTimesStep;
 }
 
-bool implicit_pays(const System& system, const Body& body, const Forces& forces, double tolerance) {
-    const double most_1_s = most_implicit_steps_1_s(system, body, forces);
-    if (most_1_s == 0.0) return false;
+double implicit_steps_1_s(const System& system, const Body& body, const Forces& forces, double tolerance) {
     // The frequency of the shortest wave over twice the number of links is that of the whole rope.
     constexpr double kStepsOfSwing = 12.0;  // at a tolerance of 1; they grow with its inverse fourth root
-    const double steps_1_s = kStepsOfSwing / std::sqrt(std::sqrt(tolerance)) *
-                             tension_frequency_1_s(system, body, forces) /
-                             (2.0 * static_cast<double>(body.link_count));
-    return steps_1_s < most_1_s;
+    return kStepsOfSwing / std::sqrt(std::sqrt(tolerance)) * tension_frequency_1_s(system, body, forces) /
+           (2.0 * static_cast<double>(body.link_count));
 }
 
 LoadMeter::LoadMeter(const System& system) {

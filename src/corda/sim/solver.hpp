@@ -110,12 +110,13 @@ void validate(const MethodDef& method);
 [[nodiscard]] bool knows_tensions(const MethodDef& method);
 
 /// Number of implicit steps of `exact` per second that cost as much as explicit ones are expected to. 0 if
-/// they cannot move the body or are not tried: its links must lean down from its only pin.
+/// they cannot move the body or are not tried: its links must lean down from its only pin, or all pull at the
+/// start.
 [[nodiscard]] double most_implicit_steps_1_s(const System& system, const Body& body, const Forces& forces);
 
-/// True if implicit steps are expected to be cheaper at this tolerance: for long ropes.
-[[nodiscard]] bool implicit_pays(const System& system, const Body& body, const Forces& forces,
-                                 double tolerance);
+/// Number of implicit steps per second that are expected at this tolerance: for long ropes it is smaller.
+[[nodiscard]] double implicit_steps_1_s(const System& system, const Body& body, const Forces& forces,
+                                        double tolerance);
 
 /// Computes the loads on pins and links from positions and tensions.
 class LoadMeter {

@@ -187,6 +187,7 @@ class Refusal : public Error {
         kDependentBars,       ///< `rattle`: the lengths of rigid bars depend on each other
         kMaterial,            ///< `relaxation`: compliance, a string or bending
         kUnknownTensions,     ///< tensions are requested that the method does not know
+        kManySteps,           ///< `auto`: the motion takes too many steps of every method
     };
 
     Refusal(Reason reason, const std::string& problem)

@@ -5,9 +5,12 @@
 #include <cmath>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "corda/core/cancel.hpp"
 #include "corda/sim/rattle/constraint_solver.hpp"
 #include "corda/sim/rattle/rattle.hpp"
+#include "corda/sim/solver.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::sim {
@@ -67,14 +70,40 @@ constexpr std::size_t kMaxImplicitDigits = 7;
 constexpr double kLooser = 2.0;  ///< errors are 0.05 to 0.4 of the tolerance
 constexpr double kImplicitCheck = 0.25;
 
+constexpr double kFirstImplicitSteps = 300.0;  ///< short ones, which a start may need
+
+/// Of `rattle` in a step.
+double stages_of(int order) {
+    return static_cast<double>(composition(order).stages.size());
+}
+
 bool is_implicit(const MethodDef& method) {
     const auto* exact = std::get_if<ExactDef>(&method);
     return exact != nullptr && exact->implicit;
 }
 
-/// Trials of `exact`, each a hundred times tighter than the last, after those with implicit steps.
-std::vector<Trial> exact_trials(const System& system, const WorldDef& world, double tolerance_m) {
-    std::vector<Trial> trials;
+/// A trial that may be run.
+struct Candidate {
+    Trial trial;
+    double effort;  ///< of a second of its run, in parts of that of other candidates
+    int digits;     ///< powers of ten by which its errors are smaller than those of other candidates, roughly
+};
+
+Candidate candidate(const MethodDef& method, const MethodDef& check, double effort, int digits) {
+    Candidate made{{}, effort, digits};
+    made.trial.method = method;
+    made.trial.check = check;
+    return made;
+}
+
+/// Order of `rattle` that is tried first for nets that stretch: stability limits its steps and those of
+/// `exact` alike, which err far less and cost some four times as much.
+constexpr int kCheapOrder = 2;
+
+/// Trials of `exact`, each a hundred times tighter than the last, after cheaper ones: with implicit steps, or
+/// of `rattle`.
+std::vector<Candidate> exact_trials(const System& system, const WorldDef& world, double tolerance_m) {
+    std::vector<Candidate> trials;
     const TightestDigits& tightest = has_kinks(system) ? kWithKinks : kSmooth;
     // The links of a net are many times as long as its way from end to end.
     const Body& body = system.bodies.front();
@@ -88,26 +117,36 @@ std::vector<Trial> exact_trials(const System& system, const WorldDef& world, dou
     while (digits < tightest.run && kTolerance[digits] > wanted) ++digits;
     std::size_t first = kMaxDigits;
     while (first < kMaxImplicitDigits && kTolerance[first] > kLooser * wanted) ++first;
+    const double explicit_1_s = most_implicit_steps_1_s(system, body, world);
     for (std::size_t i = first; i < first + kImplicitTrials && i <= kMaxImplicitDigits; ++i) {
-        if (!implicit_pays(system, system.bodies.front(), world, kTolerance[i])) break;
-        Trial& trial = trials.emplace_back();
-        trial.method = ExactDef{kTolerance[i], true};
-        trial.check = ExactDef{kImplicitCheck * kTolerance[i], true};
+        const double steps_1_s =
+            explicit_1_s > 0.0 ? implicit_steps_1_s(system, body, world, kTolerance[i]) : 0.0;
+        if (!(steps_1_s < explicit_1_s)) break;
+        trials.push_back(candidate(ExactDef{kTolerance[i], true},
+                                   ExactDef{kImplicitCheck * kTolerance[i], true}, steps_1_s,
+                                   static_cast<int>(i)));
+    }
+    if (is_net && !is_rigid_net && !refusal(system, world, RattleDef{kCheapOrder}, kNominalIntervalSeconds)) {
+        const double step_s = Rattle(system, world, RattleDef{kCheapOrder}, kNominalIntervalSeconds).step_s();
+        const std::size_t check = std::min(digits + kNextDigits, tightest.check);
+        trials.push_back(candidate(RattleDef{kCheapOrder, step_s}, ExactDef{kTolerance[check]}, 1.0,
+                                   static_cast<int>(digits) - 1));
     }
     for (;; digits = std::min(digits + kNextDigits, tightest.run)) {
-        Trial& trial = trials.emplace_back();
-        trial.method = ExactDef{kTolerance[digits]};
-        trial.check = ExactDef{
-            kTolerance[std::min(digits + (is_rigid_net ? kNetCheckDigits : kCheckDigits), tightest.check)]};
+        const std::size_t check = digits + (is_rigid_net ? kNetCheckDigits : kCheckDigits);
+        trials.push_back(candidate(ExactDef{kTolerance[digits]},
+                                   ExactDef{kTolerance[std::min(check, tightest.check)]},
+                                   explicit_1_s > 0.0 ? explicit_1_s : 1.0, static_cast<int>(digits)));
         if (digits == tightest.run) return trials;
     }
 }
 
 /// Trials of `rattle` for a graph, each checked by the next order (8 by 8) at kCheckStep of its step.
-std::vector<Trial> graph_trials(const System& system, const WorldDef& world, const PlanDef& def) {
+std::vector<Candidate> graph_trials(const System& system, const WorldDef& world, const PlanDef& def) {
+    constexpr int kDigits = 4;  // from one to the next
     const std::int64_t none_done = 0;
     const CancelScope progress = report_frames(def, none_done);
-    std::vector<Trial> trials;
+    std::vector<Candidate> trials;
     int order = 0;
     double stable_s = 0.0;
     for (const Rung& rung : kGraphLadder) {
@@ -116,67 +155,88 @@ std::vector<Trial> graph_trials(const System& system, const WorldDef& world, con
             stable_s = Rattle(system, world, RattleDef{order}, kNominalIntervalSeconds).step_s();
         }
         const double step_s = stable_s / static_cast<double>(1 << rung.halvings);
-        Trial& trial = trials.emplace_back();
-        trial.method = RattleDef{rung.order, step_s};
-        trial.check = RattleDef{std::min(rung.order + 2, RattleDef::kOrders.back()), kCheckStep * step_s,
-                                kCheckStep * RattleDef{}.guard};
+        trials.push_back(candidate(RattleDef{rung.order, step_s},
+                                   RattleDef{std::min(rung.order + 2, RattleDef::kOrders.back()),
+                                             kCheckStep * step_s, kCheckStep * RattleDef{}.guard},
+                                   stages_of(rung.order) / step_s,
+                                   kDigits * static_cast<int>(trials.size())));
     }
     return trials;
 }
 
-/// True if two trials in a row diverged or were undecided at the same time: a finer trial would be too.
-bool give_up_together(const Trial& a, const Trial& b) {
-    return ((a.diverged && b.diverged) || (a.undecided && b.undecided)) && a.reached_s == b.reached_s;
+/// Rough work of a step in updates of a particle.
+double updates_of_step(const System& system, const MethodDef& method) {
+    constexpr double kOfExact = 8.0;
+    const auto* rattle = std::get_if<RattleDef>(&method);
+    return (rattle == nullptr ? kOfExact : stages_of(rattle->order)) *
+           static_cast<double>(system.particle_count());
 }
 
-/// A horizon before this share of the motion is not worth the tightest method's cost.
-constexpr double kEarly = 0.1;
+/// What a trial that failed shows about the others.
+struct Failure {
+    std::size_t number;  ///< among the candidates
+    double ran_s;        ///< its run, and its checks
+    /// Upper bound of the time by which others reach farther, per digit; infinite if nothing shows it.
+    double gain_s;
+};
 
-/// Upper bound of the factor by which a trial a hundred times tighter reaches farther if errors grow
-/// exponentially: the time at which the last trial reached its tolerance over that of a hundredth of it.
-/// Infinite if unknown, or if even the tightest trial would end so early that another one must decide.
-double farther(const System& system, const Trial& last, std::size_t left, double end_s) {
-    if (!std::holds_alternative<ExactDef>(last.method) || has_kinks(system) || last.hundredth_s == 0.0)
+/// Upper bound of the time by which trials reach farther than one that failed after `ran_s`, per digit: that
+/// in which its difference grew tenfold. Infinite if the difference has not grown much.
+double gain_by_growth_s(const System& system, const Trial& trial, double ran_s, double end_s) {
+    constexpr double kDigitsOfHopeless = 1.2;
+    constexpr double kSlower =
+        4.0;  // than when it exceeded the tolerance: errors of chaotic motions grow in bursts
+    // Bars that come into line, and strings that come taut, part a run from its check in no time.
+    if (!std::holds_alternative<ExactDef>(trial.method) || has_kinks(system) || trial.diverged ||
+        ran_s >= end_s)
         return HUGE_VAL;
-    const double factor = last.reached_s / last.hundredth_s;
-    double tightest_s = last.reached_s;
-    for (std::size_t i = 0; i < left; ++i) tightest_s *= factor;
-    return tightest_s < kEarly * end_s ? HUGE_VAL : factor;
+    return kSlower / kDigitsOfHopeless * (ran_s - trial.reached_s);
 }
 
-/// Time by which the last trial reached farther than its looser predecessor; std::nullopt without one.
-std::optional<double> gain_s(const BodyPlan& plan) {
-    const std::size_t ran = plan.trials.size();
-    if (ran < 2 || is_implicit(plan.trials[ran - 2].method)) return std::nullopt;
-    return plan.trials[ran - 1].reached_s - plan.trials[ran - 2].reached_s;
-}
-
-/// The trial to run after number `failed`. Skips those that would not reach the end either: errors of chaotic
-/// motions grow exponentially, so each trial gains about as much time as its predecessor.
-std::size_t next_trial(const System& system, const BodyPlan& plan, std::size_t failed, std::size_t count,
-                       double end_s) {
-    const Trial& last = plan.trials.back();
-    const double gained_s = gain_s(plan).value_or(HUGE_VAL);
-    const double factor = farther(system, last, count - 1 - failed, end_s);
-    const auto later_s = [&](double reached_s) { return std::min(reached_s + gained_s, reached_s * factor); };
-    std::size_t next = failed + 1;
-    for (double hoped_s = later_s(last.reached_s); next + 1 < count && hoped_s < end_s; ++next)
-        hoped_s = later_s(hoped_s);
-    return next;
-}
-
-/// True if even the tightest trial is not expected to predict a tenth of the motion and so is not worth its
-/// cost: the failed trial is used, unless it is so loose that its energy visibly drifts.
-bool can_tell_little(const BodyPlan& plan, std::size_t failed, std::size_t count, double end_s) {
-    constexpr double kLooseTolerance = 1e-6;
-    constexpr std::size_t kRungs = 3;  // of `rattle`: orders 2 and 4 say little of 6 and 8
-    const auto* exact = std::get_if<ExactDef>(&plan.trials.back().method);
-    const std::optional<double> gained_s = gain_s(plan);
-    if (!gained_s || (exact == nullptr && plan.trials.size() < kRungs) ||
-        (exact != nullptr && exact->tolerance > kLooseTolerance))
-        return false;
-    return plan.trials.back().reached_s + static_cast<double>(count - 1 - failed) * std::max(0.0, *gained_s) <
-           kEarly * end_s;
+/// The trial to run after one that failed: of those that are worth their price, the cheapest that is expected
+/// to hold, or else the one that is expected to reach farthest. std::nullopt: the run of the one that failed
+/// is good enough.
+///
+/// A price is the work of the run to the end and of the checks up to the time that is expected to be reached,
+/// less that of ending the run that failed. All are in parts of a whole run of the method that failed.
+std::optional<std::size_t> next_trial(const System& system, const std::vector<Candidate>& candidates,
+                                      const Failure& failure, double end_s) {
+    const auto expected_s = [&](const Candidate& next) {
+        const int digits = next.digits - candidates[failure.number].digits;
+        const double reached_s = candidates[failure.number].trial.reached_s;
+        return digits > 0 ? std::min(reached_s + digits * failure.gain_s, end_s) : reached_s;
+    };
+    /// What holding to the end, and what a horizon later by the whole motion are worth.
+    constexpr double kWorthOfTheEnd = 200.0;
+    constexpr double kWorthOfAHorizon = 30.0;
+    constexpr double kSmallUpdates = 2e6;     // about 0.1 s: worth any gain
+    constexpr double kLooseTolerance = 1e-6;  // a looser run drifts visibly
+    const Candidate& failed = candidates[failure.number];
+    const double checks_per_step = static_cast<double>(failed.trial.check_steps) /
+                                   static_cast<double>(std::max<std::uint64_t>(1, failed.trial.steps));
+    const double run_updates = updates_of_step(system, failed.trial.method) *
+                               static_cast<double>(failed.trial.steps) * end_s / failure.ran_s;
+    std::size_t next = failure.number + 1;
+    while (next + 1 < candidates.size() && expected_s(candidates[next]) < end_s) ++next;
+    for (; next > failure.number && next < candidates.size(); --next) {
+        const Candidate& other = candidates[next];
+        const double hoped_s = expected_s(other);
+        const std::size_t checks = check_count(system, other.trial.method, false);
+        const double effort = other.effort / failed.effort;
+        const double price =
+            effort * (1.0 + static_cast<double>(checks) * checks_per_step * hoped_s / end_s) -
+            (1.0 - failure.ran_s / end_s);
+        const double worth =
+            hoped_s < end_s ? kWorthOfAHorizon * (hoped_s - failed.trial.reached_s) / end_s : kWorthOfTheEnd;
+        const bool is_small = hoped_s > failed.trial.reached_s && price * run_updates <= kSmallUpdates;
+        if (is_small) return next;
+        if (price <= worth) return next;
+    }
+    const auto* exact = std::get_if<ExactDef>(&failed.trial.method);
+    if (exact == nullptr || exact->implicit || exact->tolerance <= kLooseTolerance) return std::nullopt;
+    for (next = failure.number + 1; next < candidates.size(); ++next)
+        if (std::get<ExactDef>(candidates[next].trial.method).tolerance <= kLooseTolerance) return next;
+    return std::nullopt;
 }
 
 /// Records the run of a plan's method.
@@ -195,37 +255,69 @@ void record(const System& system, const WorldDef& world, const PlanDef& def, Bod
     }
 }
 
-bool is_rigid_graph(const Body& body) {
-    return !body.is_chain && body.material.compliance_1_n == 0.0 && !body.material.is_string;
+bool is_rigid_graph(const System& system, const Body& body) {
+    return !moves_as_chains(system, body) && body.material.compliance_1_n == 0.0 && !body.material.is_string;
 }
 
-/// Runs the trials, cheapest first, until one holds to the end, and makes it or the last one the plan. Ends
-/// at the first trial of `exact` that diverges for a graph of rigid bars: they have come into line.
+/// Bounds of the work of a run, in updates of a particle, so that every plan ends: about 10 s to begin with,
+/// and 20 minutes for all.
+constexpr double kFirstUpdates = 1e8;
+constexpr double kMostUpdates = 1e10;
+
+TrialKind kind_of(const System& system, const MethodDef& method, double end_s) {
+    const double updates = updates_of_step(system, method);
+    TrialKind kind;
+    kind.first_steps = kFirstUpdates / updates;
+    kind.most_steps_1_s = kMostUpdates / (updates * end_s);
+    return kind;
+}
+
+[[noreturn]] void refuse_many_steps(const Trial& trial, double end_s) {
+    throw Refusal(Refusal::Reason::kManySteps,
+                  fmt::format("its motion takes so many steps ({} of {} were not enough for {:.2g} s) that "
+                              "method auto gives up",
+                              trial.steps, method_text(trial.method), end_s));
+}
+
+/// Runs trials, cheapest first, until one holds to the end or no other is worth its price, and makes the last
+/// one the plan. Ends at the first trial of `exact` that diverges for a graph of rigid bars: they have come
+/// into line.
 void run_until_one_holds(const System& system, const WorldDef& world, const PlanDef& def,
-                         std::vector<Trial> trials, BodyPlan& plan, Recording& recording) {
+                         std::vector<Candidate> candidates, BodyPlan& plan, Recording& recording) {
     const double end_s = def.timeline.time_s(def.timeline.size() - 1);
-    const auto next = [&](std::size_t failed) {
-        // Implicit ones are cheap and say little of explicit ones.
-        if (is_implicit(trials[failed].method)) return failed + 1;
-        return next_trial(system, plan, failed, trials.size(), end_s);
-    };
-    for (std::size_t i = 0;; i = next(i)) {
-        TrialKind kind{i == 0, i + 1 == trials.size()};
-        if (is_implicit(trials[i].method))
-            kind.most_steps_1_s = most_implicit_steps_1_s(system, system.bodies.front(), world);
-        plan.method = trials[i].method;
-        run_trial(system, world, def, kind, trials[i], recording, plan.passes);
-        plan.trials.push_back(trials[i]);
-        const std::size_t count = plan.trials.size();
-        const bool is_in_line = trials[i].diverged && std::holds_alternative<ExactDef>(trials[i].method) &&
-                                is_rigid_graph(system.bodies.front());
-        if (trials[i].to_the_end || kind.is_last || is_in_line) break;
-        const bool gives_up = can_tell_little(plan, i, trials.size(), end_s) ||
-                              (count > 1 && give_up_together(plan.trials[count - 2], trials[i]));
-        if (!gives_up || is_implicit(trials[i].method)) continue;
-        record(system, world, def, plan, recording);
-        plan.trials.back().steps = recording.diagnostics().steps;
-        break;
+    std::optional<std::size_t> last;
+    for (std::optional<std::size_t> i = 0; i;) {
+        Trial& trial = candidates[*i].trial;
+        TrialKind kind = kind_of(system, trial.method, end_s);
+        kind.is_first = plan.trials.empty();
+        if (is_implicit(trial.method)) {
+            kind.most_steps_1_s = candidates.back().effort;
+            kind.first_steps = kFirstImplicitSteps + kind.most_steps_1_s * def.timeline.step_s();
+        }
+        std::optional<std::size_t> next;
+        kind.is_last = [&](double ran_s) {
+            Failure failure{*i, ran_s, gain_by_growth_s(system, trial, ran_s, end_s)};
+            // Those with implicit steps say little of others.
+            if (last && is_implicit(candidates[*last].trial.method) == is_implicit(trial.method)) {
+                // Frames are a grid, and may be sparse.
+                const double gained_s = std::max(0.0, trial.reached_s - candidates[*last].trial.reached_s) +
+                                        def.timeline.step_s();
+                const int digits = candidates[*i].digits - candidates[*last].digits;
+                failure.gain_s = std::min(failure.gain_s, gained_s / digits);
+            }
+            next = next_trial(system, candidates, failure, end_s);
+            return !next;
+        };
+        plan.method = trial.method;
+        const bool ended = run_trial(system, world, def, kind, trial, recording, plan.passes);
+        plan.trials.push_back(trial);
+        if (!ended && !is_implicit(trial.method)) refuse_many_steps(trial, end_s);
+        while (!ended && (!next || is_implicit(candidates[*next].trial.method))) next = next.value_or(*i) + 1;
+        const bool is_in_line = trial.diverged && std::holds_alternative<ExactDef>(trial.method) &&
+                                is_rigid_graph(system, system.bodies.front());
+        if (is_in_line) break;
+        last = i;
+        i = next;
     }
     const Trial& chosen = plan.trials.back();
     plan.error_estimate_m = chosen.error_estimate_m;
@@ -236,15 +328,15 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
 
 /// Makes `relaxation` the plan, without an estimate of its error, with enough sweeps to keep a cloth of some
 /// thirty rows from sagging like rubber.
-void fall_back(const System& system, const WorldDef& world, const PlanDef& def, BodyPlan& plan,
-               Recording& recording) {
+void fall_back(const System& system, const WorldDef& world, const PlanDef& def, PlanReason reason,
+               BodyPlan& plan, Recording& recording) {
     constexpr int kSweeps = 8;
     constexpr double kSteps = 4.0;  // in the nominal interval
     plan.method = RelaxationDef{kNominalIntervalSeconds / kSteps, kSweeps};
     plan.error_estimate_m = std::nullopt;
     plan.horizon_s = std::nullopt;
     plan.diverges = false;
-    plan.reason = PlanReason::kDependent;
+    plan.reason = reason;
     record(system, world, def, plan, recording);
 }
 
@@ -308,39 +400,38 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
     };
     BodyPlan plan;
     const auto exact_refusal = refusal_of(ExactDef{kTolerance[kMaxDigits]});
-    if (!exact_refusal) {
-        plan.reason = PlanReason::kExact;
-        MotionBounds start;
-        start.include({0.0, system.x_m, system.y_m});
-        run_until_one_holds(system, world, def, exact_trials(system, world, def.tolerance_m(start)), plan,
-                            recording);
-        const bool is_in_line = plan.trials.back().diverged && is_rigid_graph(system.bodies.front());
-        if (!is_in_line || refusal_of(RattleDef{})) return plan;
-        // `rattle` passes lines of bars.
-        const BodyPlan stopped = std::move(plan);
-        plan = {};
-        plan.passes = stopped.passes;
-        plan.reason = PlanReason::kGraph;
-        run_until_one_holds(system, world, def, graph_trials(system, world, def), plan, recording);
-        plan.trials.insert(plan.trials.begin(), stopped.trials.begin(), stopped.trials.end());
-        return plan;
-    }
-    if (is_rigid_chain(system.bodies.front()) ||
-        exact_refusal->reason() == Refusal::Reason::kBarWithoutLength)
+    if (exact_refusal && (is_rigid_chain(system.bodies.front()) ||
+                          exact_refusal->reason() == Refusal::Reason::kBarWithoutLength))
         throw Refusal(*exact_refusal);
-    const bool can_fall_back = !refusal_of(RelaxationDef{});
-    if (const auto rattle_refusal = refusal_of(RattleDef{})) {
-        if (!can_fall_back) throw Refusal(*rattle_refusal);
-        fall_back(system, world, def, plan, recording);
-        return plan;
-    }
-    plan.reason = PlanReason::kGraph;
+    plan.reason = exact_refusal ? PlanReason::kGraph : PlanReason::kExact;
     try {
-        run_until_one_holds(system, world, def, graph_trials(system, world, def), plan, recording);
-    } catch (const Refusal&) {
-        // A check, whose start is turned, may take bars to depend on each other that the run does not.
-        if (!can_fall_back) throw;
-        fall_back(system, world, def, plan, recording);
+        if (exact_refusal) {
+            if (const auto rattle_refusal = refusal_of(RattleDef{})) throw Refusal(*rattle_refusal);
+            // A check, whose start is turned, may take bars to depend on each other that the run does not.
+            run_until_one_holds(system, world, def, graph_trials(system, world, def), plan, recording);
+        } else {
+            MotionBounds start;
+            start.include({0.0, system.x_m, system.y_m});
+            run_until_one_holds(system, world, def, exact_trials(system, world, def.tolerance_m(start)), plan,
+                                recording);
+            const bool is_in_line =
+                plan.trials.back().diverged && is_rigid_graph(system, system.bodies.front());
+            if (is_in_line && !refusal_of(RattleDef{})) {  // which passes lines of bars
+                const BodyPlan stopped = std::move(plan);
+                plan = {};
+                plan.passes = stopped.passes;
+                plan.reason = PlanReason::kGraph;
+                run_until_one_holds(system, world, def, graph_trials(system, world, def), plan, recording);
+                plan.trials.insert(plan.trials.begin(), stopped.trials.begin(), stopped.trials.end());
+            }
+        }
+        const bool is_exact = std::holds_alternative<ExactDef>(plan.method);
+        if (plan.reason == PlanReason::kExact && !is_exact) plan.reason = PlanReason::kCheapest;
+    } catch (const Refusal& refused) {
+        const bool has_many_steps = refused.reason() == Refusal::Reason::kManySteps;
+        if ((plan.reason != PlanReason::kGraph && !has_many_steps) || refusal_of(RelaxationDef{})) throw;
+        fall_back(system, world, def, has_many_steps ? PlanReason::kManySteps : PlanReason::kDependent, plan,
+                  recording);
     }
     return plan;
 }

@@ -37,17 +37,24 @@ struct PlanDef {
 
 /// The place of a trial among those of a plan.
 struct TrialKind {
-    bool is_first = true;              ///< if of `rattle`, it has one check
-    bool is_last = true;               ///< its run will be drawn: it continues to the end without its checks
-    double most_steps_1_s = HUGE_VAL;  ///< fails if the run takes more
+    bool is_first = true;      ///< if of `rattle`, it has one check
+    double first_steps = 0.0;  ///< that the run may take, and then per second of motion
+    double most_steps_1_s = HUGE_VAL;
+    /// Asked once the trial has failed, at the time that its run has reached. If true, the run will be drawn:
+    /// it continues to the end without its checks.
+    std::function<bool(double)> is_last = [](double) { return true; };
 };
+
+/// Number of checks of a trial: `is_first` as in TrialKind.
+[[nodiscard]] std::size_t check_count(const System& system, const MethodDef& method, bool is_first);
 
 /// Runs the trial's method and its checks side by side, the checks in turned coordinates, so that their
 /// rounding differs from the start on, and records in `trial` how far they agree. A run whose error is not
 /// far above rounding has three checks, and what these differ by counts twice. `recording` is cleared and
 /// receives the run's states. Once the difference is too large for good, the checks end. Each that begins to
-/// move adds one to `passes`. Throws corda::Refusal.
-void run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial& trial,
+/// move adds one to `passes`. Returns false if the run was ended because it took too many steps. Throws
+/// corda::Refusal.
+bool run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial& trial,
                Recording& recording, int& passes);
 
 /// The reason a method cannot run a system; std::nullopt if it can.

@@ -349,36 +349,64 @@ CancelScope report_frames(const PlanDef& def, const std::int64_t& frames_done) {
     });
 }
 
-void run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial& trial,
+std::size_t check_count(const System& system, const MethodDef& method, bool is_first) {
+    const bool has_one =
+        is_far_from_rounding(system, method) || (is_first && std::holds_alternative<RattleDef>(method));
+    return has_one ? 1 : Checks::kMaxCount;
+}
+
+bool run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial& trial,
                Recording& recording, int& passes) {
-    constexpr double kFirstSteps = 100.0;  // short ones, which a start may need
+    struct TooManySteps {};
     const double interval_s = def.timeline.step_s();
     const auto total = static_cast<std::int64_t>(def.timeline.size());
     std::int64_t i = 0;
     const CancelScope progress = report_frames(def, i);
     Simulation run(system, world, trial.method, interval_s);
-    const bool has_one = is_far_from_rounding(system, trial.method) ||
-                         (kind.is_first && std::holds_alternative<RattleDef>(trial.method));
-    Checks checks(system, world, trial.check, interval_s, has_one ? 1 : Checks::kMaxCount);
+    bool is_last = false;
+    const auto count_steps = [&] {
+        const double most = kind.first_steps + kind.most_steps_1_s * run.state().time_s;
+        if (!is_last && static_cast<double>(run.diagnostics().steps) > most) throw TooManySteps();
+    };
+    Checks checks(system, world, trial.check, interval_s, check_count(system, trial.method, kind.is_first));
     Comparison comparison(def.tolerance_m);
     const Forces forces(world);
     OtherSnaps other_snaps(system, forces, def, trial.check);
     recording.clear();
     bool is_checked = true;
-    bool is_too_slow = false;
-    for (; i < total && (is_checked || kind.is_last); ++i) {
+    bool is_known = false;  // whether the trial holds
+    const auto conclude = [&] {
+        is_known = true;
+        trial.steps = run.diagnostics().steps;
+        trial.check_steps = checks.steps();
+        comparison.conclude(recording.bounds(), hidden_m(system, trial), trial);
+        trial.error_estimate_m += rounding_m(system, recording.bounds());
+        trial.to_the_end = trial.to_the_end && !trial.diverged;
+        trial.undecided = !trial.to_the_end && other_snaps.reached_s(recording.bounds()) > trial.reached_s;
+        if (!trial.to_the_end && !is_last) is_last = kind.is_last(run.state().time_s);
+    };
+    for (; i < total; ++i) {
         check_cancelled();
+        if (!is_checked && !is_known) conclude();
+        if (!is_checked && !is_last) return true;
         const bool compares = is_checked && def.timeline.is_frame(static_cast<std::size_t>(i));
         if (i == 0) ++passes;
         if (compares) checks.start(def.timeline.time_s(static_cast<std::size_t>(i)));
-        if (recording.advance(run, def.timeline, def.clock_s) == Status::kDiverged) {
-            trial.diverged = trial.diverged || is_checked;
-            break;
+        try {
+            const CancelScope limit([&] {
+                count_steps();
+                return true;
+            });
+            if (recording.advance(run, def.timeline, def.clock_s) == Status::kDiverged) {
+                trial.diverged = trial.diverged || is_checked;
+                break;
+            }
+            count_steps();
+        } catch (const TooManySteps&) {
+            trial.steps = run.diagnostics().steps;
+            return false;
         }
         if (is_checked && run.diagnostics().branched_s) trial.diverged = true;
-        const double most_steps = kFirstSteps + kind.most_steps_1_s * run.state().time_s;
-        is_too_slow = static_cast<double>(run.diagnostics().steps) > most_steps;
-        if (is_too_slow) break;
         if (!compares) continue;
         if (i == 0) passes += static_cast<int>(checks.size());
         if (checks.finish() == Status::kDiverged) trial.diverged = true;
@@ -390,12 +418,8 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
         }
         is_checked = !trial.diverged && !comparison.has_parted();
     }
-    trial.steps = run.diagnostics().steps;
-    trial.check_steps = checks.steps();
-    comparison.conclude(recording.bounds(), hidden_m(system, trial), trial);
-    trial.error_estimate_m += rounding_m(system, recording.bounds());
-    trial.to_the_end = trial.to_the_end && !trial.diverged && !is_too_slow;
-    trial.undecided = !trial.to_the_end && other_snaps.reached_s(recording.bounds()) > trial.reached_s;
+    conclude();
+    return true;
 }
 
 std::optional<Refusal> refusal(const System& system, const WorldDef& world, const MethodDef& method,

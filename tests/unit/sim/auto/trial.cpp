@@ -14,6 +14,13 @@
 namespace corda::sim {
 namespace {
 
+/// The first trial of a plan, and perhaps the last.
+TrialKind kind_of(bool is_last) {
+    TrialKind kind;
+    kind.is_last = [is_last](double) { return is_last; };
+    return kind;
+}
+
 const FrameRate kTrialFrames(Rational{60, 1});
 
 struct Outcome {
@@ -24,7 +31,7 @@ struct Outcome {
 
 /// A trial of one second.
 Outcome outcome_of(const RopeDef& rope, const MethodDef& method, const MethodDef& check, double tolerance_m,
-                   TrialKind kind = {true, false}, const OnProgress& on_progress = {}) {
+                   const TrialKind& kind = kind_of(false), const OnProgress& on_progress = {}) {
     const System system = build_system({&rope, 1});
     const auto tolerance = [tolerance_m](const MotionBounds&) { return tolerance_m; };
     Recording recording(system.particle_count(), 61);
@@ -54,7 +61,7 @@ TEST(Trial, EndsAtTheFirstLargeDifferenceUnlessItsRunIsDrawn) {
     const RopeDef rope = reference::straight_rope(5, 1.0, 60.0);
     const MethodDef coarse = RattleDef{2, 1.0 / 60.0};
     for (const bool is_last : {false, true}) {
-        const Outcome outcome = outcome_of(rope, coarse, ExactDef{1e-10}, 1e-6, {true, is_last});
+        const Outcome outcome = outcome_of(rope, coarse, ExactDef{1e-10}, 1e-6, kind_of(is_last));
         EXPECT_FALSE(outcome.trial.to_the_end);
         EXPECT_LT(outcome.trial.reached_s, 0.5);
         EXPECT_LE(3.0 * outcome.trial.largest_difference_m, 1e-6);
@@ -140,7 +147,7 @@ TEST(Trial, CanBeStopped) {
     const RopeDef rope = reference::straight_rope(5, 1.0, 60.0);
     const OnProgress stop = [](std::int64_t done, std::int64_t) { return done < 5; };
     try {
-        static_cast<void>(outcome_of(rope, ExactDef{1e-6}, ExactDef{1e-8}, 1e-3, {true, false}, stop));
+        static_cast<void>(outcome_of(rope, ExactDef{1e-6}, ExactDef{1e-8}, 1e-3, kind_of(false), stop));
         ADD_FAILURE() << "not stopped";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ExitCode::kInterrupted);
