@@ -93,7 +93,7 @@ const std::map<std::string, std::uint64_t> kHashes{
     {"cloth as it is", 0xc9eb6e5dda7a5613U},
     {"ring as it is", 0x351bc203de96c0e9U},
     {"ring by rattle", 0x49aafdfe7a35c3f0U},
-    {"ring by auto", 0x3fa3d761941ddf19U},
+    {"ring by auto", 0x3040849f69cec814U},
     {"cloth by rattle", 0x2c9261994cac0f08U},
     {"cloth by auto", 0x5da7ea555fc4a419U},
     {"materials as it is", 0x159b5cae9b46db56U},

@@ -165,7 +165,7 @@ TEST(FilmPlan, GivesTheSameBytesWhenFrozen) {
 TEST(FilmPlan, OfSeveralMethodsGivesTheSameBytesWhenFrozen) {
     const std::string bodies = kRope +
                                "[[rope]]\npoints = [[0.5, 0], [0.25, 0.45], [-0.25, 0.45], [-0.5, 0]]\n"
-                               "closed = true\n[[rope]]\nhang = { links = 4, length = 1.0 }\n"
+                               "closed = true\nbending = 0.01\n[[rope]]\nhang = { links = 4, length = 1.0 }\n"
                                "[[rope]]\npoints = [[0, 0], [0.3, 0.1]]\nstring = true\nlink_length = 0.5\n";
     Film chosen = film_of(bodies);
     const std::string toml = frozen_toml(chosen);

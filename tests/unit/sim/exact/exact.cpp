@@ -82,8 +82,9 @@ TEST(Exact, MovesAClosedRopeOnAPinAsTheRopeCutThere) {
     }
 }
 
-TEST(ExactRefuses, AClosedRopeWithoutAPin) {
-    const RopeDef ring = test::free_ring(7);
+TEST(ExactRefuses, AClosedRopeThatResistsBending) {
+    RopeDef ring = test::ring(7);
+    ring.bending_n_m2 = 0.1;
     EXPECT_EQ(test::refusal_of(build_system({&ring, 1}), ExactDef{}), Reason::kRigidGraph);
 }
 
