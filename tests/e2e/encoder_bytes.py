@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Renders small videos with every codec and container, each with three fillings of fresh memory: the bytes must be the same.
+"""Renders small videos with every codec and container, each with two fillings of fresh memory: the bytes must be the same.
 
 An encoder that reads memory that nothing wrote makes other bytes on another run.
 Usage: encoder_bytes.py CORDA
-CORDA_TEST_LONG=1 renders every size with every preset, and looks for such reads by valgrind as well.
+CORDA_TEST_LONG=1 renders every size with every preset, takes a third filling, and looks for such reads by valgrind as well.
 """
 
 import hashlib
@@ -16,6 +16,7 @@ import tempfile
 import xml.etree.ElementTree
 
 IS_LONG = bool(os.environ.get("CORDA_TEST_LONG"))
+FILLINGS = ("1", "255", "85") if IS_LONG else ("1", "255")
 SCENE = """schema = 1
 world = { duration = 4.0, gravity = 3.73 }
 video = { fps = 15, jobs = 1 }
@@ -50,8 +51,8 @@ def cases():
     for k, (words, presets, sizes) in enumerate(FORMATS):
         ending, *options = words.replace("CLEAR", " ".join(CLEAR)).split()
         for i, preset in enumerate(presets):
-            is_x264 = "libx264" in words
-            for size in sizes if IS_LONG or is_x264 else [sizes[(i + k) % len(sizes)]]:
+            has_small = words == ".mp4 --codec libx264"  # whose bytes once differed, at sizes below some 90 pixels
+            for size in sizes if IS_LONG or has_small else [sizes[(i + k) % len(sizes)]]:
                 yield ending, [*options, *(["--preset", preset] if preset else []), "--size", size, "--pad"]
 
 
@@ -80,7 +81,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         pathlib.Path(folder, "scene.toml").write_text(SCENE, encoding="utf-8")
         for ending, options in cases():
-            made = {hashlib.sha256(render(corda, folder, ending, options, MALLOC_PERTURB_=fill)).hexdigest() for fill in ("1", "85", "255")}
+            made = {hashlib.sha256(render(corda, folder, ending, options, MALLOC_PERTURB_=fill)).hexdigest() for fill in FILLINGS}
             videos += 1
             faults = [] if len(made) == 1 else [f"{len(made)} different files"]
             if IS_LONG:
