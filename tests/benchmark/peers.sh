@@ -17,7 +17,7 @@ mkdir -p "$output"
 head=problem,peer,version,method,parameter,value,error,energy_error,ms_per_s,failure
 echo "$head" >"$output/runs.csv"
 for problem in swing chain payload net bending string; do
-    for program in corda mujoco bullet bullet_soft box2d simbody ode chipmunk dart sundials odeint rods xpbd avbd; do
+    for program in corda mujoco bullet bullet_soft box2d simbody ode chipmunk dart sundials odeint dop853 rods xpbd avbd; do
         [[ -x "$programs/peers_$program" ]] || continue
         echo "$problem: $program" >&2
         "$programs/peers_$program" "$output" "$problem" >>"$output/runs.csv" ||

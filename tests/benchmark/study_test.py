@@ -219,6 +219,7 @@ def test_every_mark_of_the_pages_has_a_part_with_the_heads_of_its_table():
 def test_peers(tmp_path):
     head = "problem,peer,version,method,parameter,value,error,energy_error,ms_per_s,failure\n"
     runs = [("Corda", "exact", "tolerance", 1e-3, 1e-4, 1.0), ("Corda", "exact", "tolerance", 1e-9, 1e-10, 4.0),
+            ("Corda auto", "plan and run", "tolerance", 1e-6, 1e-7, 9.0),
             ("Box2D", "1 iteration", "steps per frame", 4, 1e-2, 3.0), ("Boost.odeint", "RK", "tolerance", 1e-9, 1e-10, 8.0)]
     (tmp_path / "runs.csv").write_text(head + "".join(
         f"{problem},{peer},1.0,{method},{parameter},{value},{error},0,{ms},\n"
@@ -229,7 +230,10 @@ def test_peers(tmp_path):
     best, of_all, swing = tables_of(text)[:3]
     assert best[2][1].strip() == "3 (Box2D: 1 iteration)"
     assert of_all[2][6].strip() == "2.52 (Boost.odeint: RK)"  # 8 over 4^(5/6)
-    assert [row[0].strip() for row in swing[2:]] == ["Corda 1.0", "Boost.odeint 1.0", "Box2D 1.0"]
+    assert [row[0].strip() for row in swing[2:]] == [
+        "Corda, best method 1.0", "Corda auto, plan and run 1.0", "Boost.odeint 1.0", "Box2D 1.0"]
+    rows = tables_of(text)[-1][2:]
+    assert [row[3].strip() for row in rows] == 2 * ["9", "9", "no estimate"]
     assert len(list((tmp_path / "out").glob("peers_*.png"))) == len(tables.PROBLEMS)
 
 

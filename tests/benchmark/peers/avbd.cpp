@@ -13,7 +13,7 @@ namespace {
 class AvbdRun : public SteppedRun {
   public:
     AvbdRun(const Problem& problem, int iterations, double steps)
-        : SteppedRun(steps), problem_(problem), system_(problem.system), iterations_(iterations) {
+        : SteppedRun(problem, steps), problem_(problem), system_(problem.system), iterations_(iterations) {
         for (std::size_t i = 0; i < problem.count(); ++i) x_.push_back({system_.x_m[i], system_.y_m[i]});
         before_ = inertial_ = x_;
         v_.resize(x_.size());
@@ -48,7 +48,7 @@ class AvbdRun : public SteppedRun {
         }
         for (std::size_t i = 0; i < x_.size(); ++i) v_[i] = (1.0 / h) * (x_[i] - before_[i]);
     }
-    void read(State& state) override {
+    void read_step(State& state) override {
         for (std::size_t i = 0; i < x_.size(); ++i) {
             state.x_m[i] = x_[i].x;
             state.y_m[i] = x_[i].y;

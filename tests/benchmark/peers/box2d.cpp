@@ -13,7 +13,7 @@ namespace {
 class Box2dRun : public SteppedRun {
   public:
     Box2dRun(const Problem& problem, int iterations, double steps)
-        : SteppedRun(steps),
+        : SteppedRun(problem, steps),
           problem_(problem),
           iterations_(iterations),
           scale_(1.0 / problem.system.bars[0].rest_m),
@@ -33,7 +33,7 @@ class Box2dRun : public SteppedRun {
         for (const Bar& bar : system.bars) add_joint(bar);
     }
     void step() override { world_.Step(static_cast<float>(step_s_), iterations_, iterations_); }
-    void read(State& state) override {
+    void read_step(State& state) override {
         for (std::size_t i = 0; i < problem_.count(); ++i) {
             if (problem_.system.is_pinned(i)) continue;
             const b2Vec2 at = bodies_[i]->GetPosition();

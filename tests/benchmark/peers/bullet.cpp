@@ -16,7 +16,7 @@ namespace {
 class BulletRun : public SteppedRun {
   public:
     BulletRun(const Problem& problem, bool by_rk4, double steps)
-        : SteppedRun(steps),
+        : SteppedRun(problem, steps),
           problem_(problem),
           dispatcher_(&configuration_),
           world_(&dispatcher_, &broadphase_, &solver_, &configuration_),
@@ -47,7 +47,7 @@ class BulletRun : public SteppedRun {
             body_.addJointTorque(i, -problem_.bend_n_m * std::sin(body_.getJointPos(i)));
         world_.stepSimulation(step_s_, 0);
     }
-    void read(State& state) override {
+    void read_step(State& state) override {
         const double link_m = problem_.link_m();
         double angle = 0.0;
         double omega = 0.0;

@@ -46,7 +46,7 @@ btSoftBody* soft_body(const Problem& problem, btSoftBodyWorldInfo& info, int pas
 class SoftRun : public SteppedRun {
   public:
     SoftRun(const Problem& problem, int passes, double steps)
-        : SteppedRun(steps), problem_(problem), dispatcher_(&configuration_) {
+        : SteppedRun(problem, steps), problem_(problem), dispatcher_(&configuration_) {
         const btVector3 gravity(0, -problem.gravity(), 0);
         if (is_net(problem)) {
             auto* const bodies = new btDeformableBodySolver();
@@ -75,7 +75,7 @@ class SoftRun : public SteppedRun {
     }
     ~SoftRun() override { world_->removeCollisionObject(body_.get()); }
     void step() override { world_->stepSimulation(step_s_, 0); }
-    void read(State& state) override {
+    void read_step(State& state) override {
         for (std::size_t i = 0; i < problem_.count(); ++i) {
             const btSoftBody::Node& node = body_->m_nodes[static_cast<int>(i)];
             state.x_m[i] = node.m_x.x();

@@ -14,7 +14,7 @@ static_assert(sizeof(cpFloat) == sizeof(double));
 class ChipmunkRun : public SteppedRun {
   public:
     ChipmunkRun(const Problem& problem, int iterations, double steps)
-        : SteppedRun(steps), problem_(problem), space_(cpSpaceNew()) {
+        : SteppedRun(problem, steps), problem_(problem), space_(cpSpaceNew()) {
         cpSpaceSetGravity(space_, cpv(0.0, -problem.gravity()));
         cpSpaceSetIterations(space_, iterations);
         const System& system = problem.system;
@@ -45,7 +45,7 @@ class ChipmunkRun : public SteppedRun {
         cpSpaceFree(space_);
     }
     void step() override { cpSpaceStep(space_, step_s_); }
-    void read(State& state) override {
+    void read_step(State& state) override {
         for (std::size_t i = 0; i < problem_.count(); ++i) {
             if (problem_.system.is_pinned(i)) continue;
             const cpVect at = cpBodyGetPosition(bodies_[i]);

@@ -1,6 +1,10 @@
-// Corda itself. `exact` is driven by its tolerance, the others by their step.
+// Corda itself. `exact` is driven by its tolerance, the others by their step. The peer "Corda auto" chooses
+// the method: its times include the plan, with all checks.
+
+#include <cmath>
 
 #include "benchmark/peers/peer.hpp"
+#include "corda/sim/auto/planner.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::peers {
@@ -23,6 +27,33 @@ class CordaRun : public Run {
   private:
     std::unique_ptr<sim::Solver> solver_;
     State state_;
+};
+
+class AutoRun : public Run {
+  public:
+    AutoRun(const Problem& problem, double tolerance)
+        : problem_(problem),
+          timeline_(FrameRate({std::lround(Problem::kFps), 1}), problem.frames),
+          tolerance_m_(tolerance * problem.length_m),
+          recording_(problem.count(), timeline_.size(), problem.system.bars.size(), {},
+                     {.velocities = true}) {}
+    void advance(double /*time_s*/) override {
+        if (frame_++ > 0) return;
+        const PlanDef def{[this](const MotionBounds&) { return tolerance_m_; }, timeline_, {}, {}};
+        const Plan plan =
+            sim::plan_methods(problem_.system, sim::NamedMethods(1), problem_.world, def, recording_);
+        if (plan.horizon_s || !plan.error_estimate_m) throw Failure("no error estimate up to the end");
+    }
+    void read(State& state) override { recording_.read(frame_, state); }
+
+  private:
+    using PlanDef = sim::PlanDef;
+
+    const Problem& problem_;
+    Timeline timeline_;
+    double tolerance_m_;
+    sim::Recording recording_;
+    std::size_t frame_ = 0;
 };
 
 Series rattle(int order) {
@@ -51,10 +82,16 @@ int main(int argc, char** argv) {
     using namespace corda;
     using namespace corda::peers;
     const Series exact{"exact", "tolerance", powers_of_ten(2, 15),
-                       [](const Problem& problem, double tolerance) {
+                       [](const peers::Problem& problem, double tolerance) {
                            return std::make_unique<CordaRun>(problem, ExactDef{tolerance});
                        },
                        is_any};
-    return run_peer(argc, argv, "Corda", CORDA_VERSION,
-                    {exact, rattle(2), rattle(4), rattle(8), relaxation(1), relaxation(16)});
+    const Series automatic{"plan and run", "tolerance", powers_of_ten(1, 10),
+                           [](const peers::Problem& problem, double tolerance) {
+                               return std::make_unique<AutoRun>(problem, tolerance);
+                           },
+                           is_any};
+    const int failed = run_peer(argc, argv, "Corda", CORDA_VERSION,
+                                {exact, rattle(2), rattle(4), rattle(8), relaxation(1), relaxation(16)});
+    return failed != 0 ? failed : run_peer(argc, argv, "Corda auto", CORDA_VERSION, {automatic});
 }

@@ -18,7 +18,7 @@ using namespace dart::dynamics;
 class DartRun : public SteppedRun {
   public:
     DartRun(const Problem& problem, bool by_rk4, double steps)
-        : SteppedRun(steps), problem_(problem), by_rk4_(by_rk4), chain_(Skeleton::create("chain")) {
+        : SteppedRun(problem, steps), problem_(problem), by_rk4_(by_rk4), chain_(Skeleton::create("chain")) {
         chain_->setGravity(Eigen::Vector3d(0, -problem.gravity(), 0));
         chain_->setTimeStep(step_s_);
         const Eigen::Vector3d along(problem.link_m(), 0, 0);
@@ -47,7 +47,7 @@ class DartRun : public SteppedRun {
         chain_->integrateVelocities(step_s_);
         chain_->integratePositions(step_s_);
     }
-    void read(State& state) override {
+    void read_step(State& state) override {
         const Eigen::Vector3d tip(problem_.link_m(), 0, 0);
         for (std::size_t i = 0; i + 1 < problem_.count(); ++i) {
             const BodyNode* const body = chain_->getBodyNode(i);

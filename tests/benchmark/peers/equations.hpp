@@ -110,10 +110,9 @@ class Equations {
     /// Link i leads from particle i to i + 1.
     void chain_slope(const Real* y, Real* dy) {
         const Real* const omega = y + links_;
-        for (std::size_t i = 0; i < links_; ++i) {
-            c_[i] = std::cos(y[i]);
-            s_[i] = std::sin(y[i]);
-        }
+        // Two loops, so that a compiler can take vector functions of the C library.
+        for (std::size_t i = 0; i < links_; ++i) c_[i] = std::cos(y[i]);
+        for (std::size_t i = 0; i < links_; ++i) s_[i] = std::sin(y[i]);
         find_couples();
         for (std::size_t i = 0; i < links_; ++i) {
             const Real near = weight_[i];

@@ -75,7 +75,7 @@ std::string tendons(const Problem& problem) {
 class MujocoRun : public SteppedRun {
   public:
     MujocoRun(const Problem& problem, const char* integrator, double steps)
-        : SteppedRun(steps), problem_(problem) {
+        : SteppedRun(problem, steps), problem_(problem) {
         std::ostringstream xml;
         xml.precision(17);
         xml << "<mujoco><compiler angle='radian' boundmass='0' boundinertia='0'/><size njmax='500' "
@@ -110,7 +110,7 @@ class MujocoRun : public SteppedRun {
         if (model_ != nullptr) mj_deleteModel(model_);
     }
     void step() override { mj_step(model_, data_); }
-    void read(State& state) override {
+    void read_step(State& state) override {
         if (data_->warning[mjWARN_BADQACC].number + data_->warning[mjWARN_BADQPOS].number +
                 data_->warning[mjWARN_BADQVEL].number >
             0)

@@ -15,7 +15,7 @@ class OdeRun : public SteppedRun {
   public:
     /// `iterations` of the iterative solver; 0: the direct one.
     OdeRun(const Problem& problem, int iterations, double steps)
-        : SteppedRun(steps), problem_(problem), iterations_(iterations), world_(dWorldCreate()) {
+        : SteppedRun(problem, steps), problem_(problem), iterations_(iterations), world_(dWorldCreate()) {
         dWorldSetGravity(world_, 0.0, -problem.gravity(), 0.0);
         dWorldSetERP(world_, 0.2);
         dWorldSetCFM(world_, 0.0);
@@ -48,7 +48,7 @@ class OdeRun : public SteppedRun {
         }
         if (problem_.is_string) dJointGroupEmpty(contacts_);
     }
-    void read(State& state) override {
+    void read_step(State& state) override {
         for (std::size_t i = 0; i < problem_.count(); ++i) {
             if (bodies_[i] == nullptr) continue;
             const dReal* const at = dBodyGetPosition(bodies_[i]);

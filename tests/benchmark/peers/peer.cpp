@@ -116,11 +116,6 @@ double energy_scale_j(const Problem& problem) {
     return mass_kg * problem.gravity() * problem.length_m;
 }
 
-State start_of(const Problem& problem) {
-    const System& system = problem.system;
-    return {0.0, system.x_m, system.y_m, system.vx_m_s, system.vy_m_s};
-}
-
 void read_truth(const std::string& folder, Problem& problem) {
     std::ifstream file(truth_path(folder, problem), std::ios::binary);
     problem.truth.assign(static_cast<std::size_t>(problem.frames), start_of(problem));
@@ -209,6 +204,47 @@ void run_series(const std::string& head, const Problem& problem, const Series& s
 
 }  // namespace
 
+SteppedRun::SteppedRun(const Problem& problem, double steps_per_frame)
+    : step_s_(1.0 / (Problem::kFps * steps_per_frame)), steps_(static_cast<int>(steps_per_frame)) {
+    if (steps_ == 0) from_ = to_ = start_of(problem);
+}
+
+void SteppedRun::advance(double time_s) {
+    for (int i = 0; i < steps_; ++i) step();
+    constexpr double kRounding = 1e-9;  // of a step
+    for (time_s_ = time_s; steps_ == 0 && to_.time_s < time_s - kRounding * step_s_;) {
+        std::swap(from_, to_);
+        step();
+        read_step(to_);
+        to_.time_s = from_.time_s + step_s_;
+    }
+}
+
+void SteppedRun::read(State& state) {
+    if (steps_ > 0) return read_step(state);
+    const double x = (time_s_ - from_.time_s) / step_s_;
+    const auto interpolate = [&](const std::vector<double> State::*position,
+                                 const std::vector<double> State::*velocity, std::vector<double>& at,
+                                 std::vector<double>& speed) {
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            const double moved = (to_.*position)[i] - (from_.*position)[i];
+            const double first = step_s_ * (from_.*velocity)[i];
+            const double last = step_s_ * (to_.*velocity)[i];
+            const double square = 3.0 * moved - 2.0 * first - last;
+            const double cube = first + last - 2.0 * moved;
+            at[i] = (from_.*position)[i] + x * (first + x * (square + x * cube));
+            speed[i] = (first + x * (2.0 * square + 3.0 * x * cube)) / step_s_;
+        }
+    };
+    interpolate(&State::x_m, &State::vx_m_s, state.x_m, state.vx_m_s);
+    interpolate(&State::y_m, &State::vy_m_s, state.y_m, state.vy_m_s);
+}
+
+State start_of(const Problem& problem) {
+    const System& system = problem.system;
+    return {0.0, system.x_m, system.y_m, system.vx_m_s, system.vy_m_s};
+}
+
 double Problem::start_angle() const {
     return std::atan2(system.y_m[1] - system.y_m[0], system.x_m[1] - system.x_m[0]);
 }
@@ -231,7 +267,7 @@ std::string truth_path(const std::string& folder, const Problem& problem) {
 
 std::vector<double> step_counts() {
     constexpr double kFine = 16.0;
-    std::vector<double> values;
+    std::vector<double> values{0.25, 0.5};
     for (double value = 1.0; value < 1e6; value *= value < kFine ? 2.0 : 4.0) values.push_back(value);
     return values;
 }

@@ -33,6 +33,9 @@ struct Problem {
     [[nodiscard]] double start_angle() const;
 };
 
+/// The state at t = 0.
+[[nodiscard]] State start_of(const Problem& problem);
+
 /// All problems.
 [[nodiscard]] std::vector<Problem> problems();
 
@@ -58,21 +61,25 @@ class Run {
     virtual void read(State& state) = 0;
 };
 
-/// A run by fixed steps that divide the frame interval.
+/// A run by fixed steps that divide the frame interval or span several frames. Frames within a step are read
+/// from the cubic polynomials through its ends with their velocities, as a user of the peer would.
 class SteppedRun : public Run {
   public:
-    explicit SteppedRun(double steps_per_frame)
-        : step_s_(1.0 / (Problem::kFps * steps_per_frame)), steps_(static_cast<int>(steps_per_frame)) {}
-    void advance(double /*time_s*/) final {
-        for (int i = 0; i < steps_; ++i) step();
-    }
+    /// `steps_per_frame`: a whole number, or the inverse of one.
+    SteppedRun(const Problem& problem, double steps_per_frame);
+    void advance(double time_s) final;
+    void read(State& state) final;
 
   protected:
     virtual void step() = 0;
+    /// As read(), at the end of the last step.
+    virtual void read_step(State& state) = 0;
     double step_s_;
 
   private:
-    int steps_;
+    int steps_;        ///< in a frame; 0: a step spans frames
+    State from_, to_;  ///< ends of a step that spans frames
+    double time_s_ = 0.0;
 };
 
 /// A peer's method and the values of its parameter, from cheap to expensive.
@@ -86,7 +93,7 @@ struct Series {
 };
 
 inline constexpr const char* kStepsPerFrame = "steps per frame";
-/// 1, 2, 4, 8, 16, 64, 256, ...: run_peer() stops where a run takes too long.
+/// 1/4, 1/2, 1, 2, 4, 8, 16, 64, 256, ...: run_peer() stops where a run takes too long.
 [[nodiscard]] std::vector<double> step_counts();
 /// 10^-first, ..., 10^-last.
 [[nodiscard]] std::vector<double> powers_of_ten(int first, int last);

@@ -13,7 +13,7 @@ namespace {
 class RodRun : public SteppedRun {
   public:
     RodRun(const Problem& problem, double steps)
-        : SteppedRun(steps), problem_(problem), system_(problem.system) {
+        : SteppedRun(problem, steps), problem_(problem), system_(problem.system) {
         for (std::size_t i = 0; i < problem.count(); ++i) x_.push_back({system_.x_m[i], system_.y_m[i]});
         before_ = x_;
         v_.resize(x_.size());
@@ -40,7 +40,7 @@ class RodRun : public SteppedRun {
         }
         for (std::size_t i = 1; i < x_.size(); ++i) v_[i] = (1.0 / step_s_) * (x_[i] - before_[i]);
     }
-    void read(State& state) override {
+    void read_step(State& state) override {
         for (std::size_t i = 0; i < x_.size(); ++i) {
             state.x_m[i] = x_[i].x;
             state.y_m[i] = x_[i].y;

@@ -12,7 +12,9 @@ from page import Chapter, Part, Picture, paragraph, processor
 
 GOALS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-9)
 # They know no mechanics: the equations of motion that they integrate are those of equations.hpp.
-SOLVERS = ("SUNDIALS", "Boost.odeint")
+SOLVERS = ("SUNDIALS", "Boost.odeint", "DOP853")
+# Its rows, and no peer: the best method for a problem, chosen in hindsight, and auto, whose times include its plan.
+CORDA = ("Corda", "Corda auto")
 CLEARLY = 0.7  # beyond the floor of rounding, errors vary by chance
 COLOURS = ("#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#b8860b", "#17a2b8", "#e377c2", "#8c564b", "#556b2f", "#ff7f0e",
            "#4b0082", "#008080", "#c71585", "#7f7f7f", "#006400", "#800000")
@@ -111,8 +113,9 @@ def problem_table(peers):
             else:
                 cells.append(f"{number(time[0])} ({number(time[0] / corda[goal][0])}x)")
         version = next(iter(methods.values()))[0]["version"]
-        name = peer if version == "own" else f"{peer} {version.removeprefix('Boost ').replace('_', '.')}"
-        rows.append((peer != "Corda", [-sum(map(math.isfinite, rank)), *rank], f"| {name} | " + " | ".join(cells)
+        shown = {"Corda": "Corda, best method", "Corda auto": "Corda auto, plan and run"}.get(peer, peer)
+        name = peer if version == "own" else f"{shown} {version.removeprefix('Boost ').replace('_', '.')}"
+        rows.append((CORDA.index(peer) if peer in CORDA else len(CORDA), [-sum(map(math.isfinite, rank)), *rank], f"| {name} | " + " | ".join(cells)
                      + f" | {reached(methods)} |"))
     return "\n".join(lines + [row for _, _, row in sorted(rows)])
 
@@ -124,7 +127,7 @@ def winners(runs, without=()):
         found[problem] = {}
         for goal in GOALS:
             corda = best_at(peers["Corda"], goal)
-            others = [(time, peer) for peer in peers if peer not in ("Corda", *without) and (time := best_at(peers[peer], goal))]
+            others = [(time, peer) for peer in peers if peer not in (*CORDA, *without) and (time := best_at(peers[peer], goal))]
             best = min(others, key=lambda other: other[0][0], default=None)
             found[problem][goal] = (corda, best)
     return found
@@ -150,15 +153,15 @@ def plot(problem, peers, names):
     figure = Figure(figsize=(9, 5.6))
     axes = figure.subplots()
     labels = []
-    for peer, methods in sorted(peers.items(), key=lambda item: item[0] == "Corda"):
+    for peer, methods in sorted(peers.items(), key=lambda item: item[0] in CORDA):
         # One line per peer, of the runs that none of its others beats.
         line = line_of([run for method_runs in methods.values() for run in method_runs])
         line = [point for point in line if point[0] < 1]
         if not line:
             continue
-        colour = "black" if peer == "Corda" else COLOURS[names.index(peer)]
-        axes.plot([point[0] for point in line], [point[1] for point in line], "o-", color=colour, markersize=3,
-                  linewidth=2.5 if peer == "Corda" else 1.2)
+        colour = "black" if peer in CORDA else COLOURS[names.index(peer)]
+        axes.plot([point[0] for point in line], [point[1] for point in line], "o--" if peer == "Corda auto" else "o-",
+                  color=colour, markersize=3, linewidth=2.5 if peer == "Corda" else 1.2)
         labels.append((line[-1][0], line[-1][1], peer, colour))
     axes.set(xscale="log", yscale="log", xlabel="largest error / L", ylabel="ms per simulated second",
              title=PROBLEMS[problem])
@@ -179,16 +182,21 @@ def plot(problem, peers, names):
     return figure
 
 
-def readme_rows(found, engines):
-    lines = ["| largest error / L | Corda, ms per simulated second | best engine or published method, ms | best solver of the same equations, ms |",
-             "|---:|---:|---|---|"]
+def readme_rows(runs, found, engines):
+    """Rows of two problems: time of stepping, and of Corda's own choice with its plan."""
+    lines = ["| problem | largest error / L | Corda, best method: stepping | Corda auto: plan and run | best engine or published method: stepping | "
+             "best solver of the same equations: stepping |",
+             "|---|---:|---:|---:|---|---|"]
 
     def cell(best, corda):
         return f"{number(best[0][0])} ({best[1]}, {number(best[0][0] / corda[0])}x)" if best else "none reaches it"
 
-    for goal in (1e-3, 1e-6, 1e-9):
-        corda, best = found["swing"][goal]
-        lines.append(f"| {goal_text(goal)} | {number(corda[0])} | {cell(engines['swing'][goal][1], corda)} | {cell(best, corda)} |")
+    for problem in ("swing", "chain"):
+        for goal in (1e-3, 1e-6, 1e-9):
+            corda, best = found[problem][goal]
+            own = best_at(runs[problem].get("Corda auto", {}), goal)
+            lines.append(f"| {PROBLEMS[problem]} | {goal_text(goal)} | {number(corda[0])} | {number(own[0]) if own else 'no estimate'} | "
+                         f"{cell(engines[problem][goal][1], corda)} | {cell(best, corda)} |")
     return "\n".join(lines)
 
 
@@ -196,7 +204,7 @@ def peers(path):
     """The chapter of the runs in a file."""
     runs = read_runs(path)
     found, engines = winners(runs), winners(runs, SOLVERS)
-    names = sorted({peer for peers in runs.values() for peer in peers} - {"Corda"})
+    names = sorted({peer for peers in runs.values() for peer in peers} - set(CORDA))
     pictures = []
     parts = [f"Processor: {processor()}, one thread.",
              ratio_table(engines, "time of the best engine or published method, over Corda's"),
@@ -208,4 +216,4 @@ def peers(path):
                      + problem_table(runs[problem])
                      + ("\n\n" + paragraph(f"Without a formulation of this problem: {', '.join(absent)}.") if absent else ""))
     return Chapter("Peers", [Part("peers", "", "\n\n".join(parts)),
-                             Part("peers_rows", "", readme_rows(found, engines))], pictures)
+                             Part("peers_rows", "", readme_rows(runs, found, engines))], pictures)

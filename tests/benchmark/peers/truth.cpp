@@ -85,11 +85,6 @@ class Extrapolation {
     Vector y;
 };
 
-State start_of(const Problem& problem) {
-    const System& system = problem.system;
-    return {0.0, system.x_m, system.y_m, system.vx_m_s, system.vy_m_s};
-}
-
 constexpr Real kFps = 60;
 
 std::vector<State> smooth_motion(const Problem& problem, Real tolerance) {

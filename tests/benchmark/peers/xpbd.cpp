@@ -11,9 +11,9 @@ namespace {
 class XpbdRun : public SteppedRun {
   public:
     XpbdRun(const Problem& problem, double steps)
-        : SteppedRun(steps), problem_(problem), xpbd_(problem.system, problem.world.gravity_m_s2) {}
+        : SteppedRun(problem, steps), problem_(problem), xpbd_(problem.system, problem.world.gravity_m_s2) {}
     void step() override { xpbd_.step(step_s_); }
-    void read(State& state) override {
+    void read_step(State& state) override {
         for (std::size_t i = 0; i < problem_.count(); ++i) {
             state.x_m[i] = xpbd_.position_m[i].x;
             state.y_m[i] = xpbd_.position_m[i].y;
@@ -30,7 +30,10 @@ class XpbdRun : public SteppedRun {
 class PbdRun : public SteppedRun {
   public:
     PbdRun(const Problem& problem, int passes, double steps)
-        : SteppedRun(steps), system_(problem.system), gravity_(problem.world.gravity_m_s2), passes_(passes) {
+        : SteppedRun(problem, steps),
+          system_(problem.system),
+          gravity_(problem.world.gravity_m_s2),
+          passes_(passes) {
         for (std::size_t i = 0; i < problem.count(); ++i) x_.push_back({system_.x_m[i], system_.y_m[i]});
         before_ = x_;
         v_.resize(x_.size());
@@ -47,7 +50,7 @@ class PbdRun : public SteppedRun {
         }
         for (std::size_t i = 0; i < x_.size(); ++i) v_[i] = (1.0 / step_s_) * (x_[i] - before_[i]);
     }
-    void read(State& state) override {
+    void read_step(State& state) override {
         for (std::size_t i = 0; i < x_.size(); ++i) {
             state.x_m[i] = x_[i].x;
             state.y_m[i] = x_[i].y;
