@@ -169,8 +169,7 @@ std::string reason_text(const BodyPlan& plan) {
             return "its error is within the tolerance, with less work than method exact";
         case PlanReason::kManySteps:
             return "methods that keep bars at their lengths would take too many steps; there is no estimate "
-                   "of "
-                   "the error";
+                   "of the error";
     }
     return "";
 }
@@ -204,8 +203,7 @@ std::string unknown_tensions_text(const BodyPlan& plan) {
                    ? "method relaxation has none; another solver.method gives them"
                : plan.reason == PlanReason::kManySteps
                    ? "auto takes method relaxation, which has none, because others would take too many "
-                     "steps; "
-                     "give less unequal masses"
+                     "steps; give less unequal masses"
                    : "auto takes method relaxation, which has none, because bars depend on each other at the "
                      "start; bend collinear bars a little, or let them stretch by a compliance";
     }

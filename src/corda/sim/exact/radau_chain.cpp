@@ -114,17 +114,6 @@ const std::vector<Body>& bodies_of(const System& system) {
         "implicit steps move ropes of rigid links with a pin that neither resist bending nor are strings");
 }
 
-/// The polynomial through the values of the last step's stages at `time`, in parts of that step.
-std::array<double, 3> weights_of_stages(double time, bool starts_at_0) {
-    std::array<double, 3> weights{1.0, 1.0, 1.0};
-    for (int k = 0; k < 3; ++k) {
-        for (int j = 0; j < 3; ++j)
-            if (j != k) weights[k] *= (time - kTime[j]) / (kTime[k] - kTime[j]);
-        if (starts_at_0) weights[k] *= time / kTime[k];
-    }
-    return weights;
-}
-
 void measure_joints(RadauChain& r) {
     for (Index j = 1; j < r.links; ++j) {
         r.joint_c[j] = r.c[j] * r.c[j + 1] + r.s[j] * r.s[j + 1];

@@ -53,6 +53,17 @@ CORDA_INLINE double slope_at(Index k, double first, double middle, double last) 
     return kB[k][0] * first + kB[k][1] * middle + kB[k][2] * last;
 }
 
+/// The polynomial through the values of the last step's stages at `time`, in parts of that step.
+inline std::array<double, 3> weights_of_stages(double time, bool starts_at_0) {
+    std::array<double, 3> weights{1.0, 1.0, 1.0};
+    for (int k = 0; k < 3; ++k) {
+        for (int j = 0; j < 3; ++j)
+            if (j != k) weights[k] *= (time - kTime[j]) / (kTime[k] - kTime[j]);
+        if (starts_at_0) weights[k] *= time / kTime[k];
+    }
+    return weights;
+}
+
 CORDA_INLINE Complex operator+(Complex a, Complex b) {
     return {a.re + b.re, a.im + b.im};
 }
