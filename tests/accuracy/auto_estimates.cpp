@@ -1,5 +1,5 @@
 // Error estimates of method auto on random scenes of many families, held against ExtendedMotion: one is false
-// if a position at a frame time under the horizon is farther from the truth than error_estimate_m. Some
+// if a position at a time under the horizon is farther from the truth than error_estimate_m. Some
 // scenes per family as a rule; CORDA_ESTIMATE_SCENES=1000 runs so many of each, CORDA_ESTIMATE_SCENES=40:60
 // those from number 40 to 59, and prints a row of a table for each family.
 
@@ -109,6 +109,7 @@ INSTANTIATE_TEST_SUITE_P(Of, AutoEstimates, testing::ValuesIn(test::rope_familie
 INSTANTIATE_TEST_SUITE_P(OfOther, AutoEstimates, testing::ValuesIn(test::other_families()), kName);
 INSTANTIATE_TEST_SUITE_P(OfMassesAndLinkages, AutoEstimates,
                          testing::ValuesIn(test::mass_and_linkage_families()), kName);
+INSTANTIATE_TEST_SUITE_P(OfLooks, AutoEstimates, testing::ValuesIn(test::look_families()), kName);
 
 /// A scene of which an estimate was false once.
 struct Fixed {
@@ -153,8 +154,8 @@ class AutoEstimatesFound : public testing::TestWithParam<Found> {};
 TEST_P(AutoEstimatesFound, IsTrue) {
     const Found& found = GetParam();
     bool is_known = false;
-    for (const auto families :
-         {test::rope_families(), test::other_families(), test::mass_and_linkage_families()}) {
+    for (const auto families : {test::rope_families(), test::other_families(),
+                                test::mass_and_linkage_families(), test::look_families()}) {
         for (const EstimateFamily& family : families) {
             if (family.name != std::string_view(found.family)) continue;
             is_known = true;

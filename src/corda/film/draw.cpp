@@ -24,7 +24,9 @@ view::Caption caption_of(const Look& look, const Motion& motion, const State& st
                          const view::Camera& map) {
     const Plan& plan = motion.plan;
     std::optional<double> estimate_px;
-    if (plan.error_estimate_m) estimate_px = *plan.error_estimate_m * map.pixels_per_metre();
+    if (plan.error_estimate_m) {
+        estimate_px = view::errors_shown(look.scene.camera) * *plan.error_estimate_m * map.pixels_per_metre();
+    }
     view::Caption caption{state.time_s, figures.energy_error,
                           method_caption(plan, estimate_px, look.scene.overlay.language)};
     if (look.scene.overlay.energy && !figures.energy_error) caption.energy = motion.energy_of(state);

@@ -75,7 +75,7 @@ const Plan& Film::plan() const {
 
 std::optional<double> Film::error_estimate_px() const {
     if (!plan().error_estimate_m) return std::nullopt;
-    return *plan().error_estimate_m * scene().video.height_px /
+    return view::errors_shown(camera()) * *plan().error_estimate_m * scene().video.height_px /
            view::least_height_m(camera(), *camera().height_m);
 }
 

@@ -255,13 +255,14 @@ Look look_within(const Scene& scene, const System& system, std::span<const Motio
 PictureScale::PictureScale(const Scene& scene, const System& system)
     : scene_(&scene), origin_m_(system.origin_m), insets_(overlay_of(scene).insets) {}
 
-double PictureScale::largest_pixels_per_metre(const MotionBounds& bounds) const {
+double PictureScale::largest_error_px_per_metre(const MotionBounds& bounds) const {
     const std::array<view::Drawn, 1> lines{{{.bounds = bounds}}};
     const VideoDef& video = scene_->video;
     const double height_m =
         *view::fit_camera(scene_->camera, origin_m_, lines, video.width_px, video.height_px, insets_)
              .height_m;
-    return video.height_px / view::least_height_m(scene_->camera, height_m);
+    return view::errors_shown(scene_->camera) * video.height_px /
+           view::least_height_m(scene_->camera, height_m);
 }
 
 }  // namespace corda::film

@@ -61,8 +61,9 @@ class PictureScale {
     /// The scene and the system must outlive it.
     PictureScale(const Scene& scene, const System& system);
 
-    /// Lower bound on the scale of the camera that look_at() fits to a motion within `bounds`.
-    [[nodiscard]] double largest_pixels_per_metre(const MotionBounds& bounds) const;
+    /// Lower bound on the displacement in pixels per metre of error of positions, by the camera that
+    /// look_at() fits to a motion within `bounds`.
+    [[nodiscard]] double largest_error_px_per_metre(const MotionBounds& bounds) const;
 
   private:
     const Scene* scene_;

@@ -73,10 +73,11 @@ Plan run(Motion& motion, const Scene& scene, const OnProgress& on_progress) {
     const double tolerance_px = std::get<AutoDef>(scene.solver).tolerance_px;
     const PictureScale scale(scene, motion.system);
     const auto tolerance_m = [&](const MotionBounds& bounds) {
-        return tolerance_px / scale.largest_pixels_per_metre(bounds);
+        return tolerance_px / scale.largest_error_px_per_metre(bounds);
     };
     return sim::plan_methods(motion.system, named, scene.world,
-                             {tolerance_m, *motion.timeline, on_progress, now_s}, *motion.recording);
+                             {tolerance_m, *motion.timeline, on_progress, now_s, motion.duration_s},
+                             *motion.recording);
 }
 
 }  // namespace

@@ -70,22 +70,32 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
 Status Simulation::advance_to(double time_s) {
+    if (move_to(time_s, next_) == Status::kDiverged) return Status::kDiverged;
+    std::swap(state_, next_);
+    const CancelScope whole({}, CancelScope::Outer::kIgnored);
+    observe();
+    return Status::kOk;
+}
+
+Status Simulation::pass(double time_s, State& at) {
+    return move_to(time_s, at);
+}
+
+Status Simulation::move_to(double time_s, State& to) {
     if (is_stepping_) {
         throw Error(ExitCode::kUsage, "advance_to(" + std::to_string(time_s) +
                                           "): the simulation was interrupted; make a new Simulation");
     }
-    if (!(time_s >= state_.time_s) || std::isinf(time_s)) {
+    if (!(time_s >= passed_s_) || std::isinf(time_s)) {
         throw Error(ExitCode::kUsage, "advance_to(" + std::to_string(time_s) + "): the state is already at " +
-                                          std::to_string(state_.time_s) + " s; make a new Simulation");
+                                          std::to_string(passed_s_) + " s; make a new Simulation");
     }
     if (has_diverged_) return Status::kDiverged;
     is_stepping_ = true;
-    has_diverged_ = solver_->advance_to(time_s, next_) == Status::kDiverged || !is_sound(next_);
+    has_diverged_ = solver_->advance_to(time_s, to) == Status::kDiverged || !is_sound(to);
     is_stepping_ = false;
     if (has_diverged_) return Status::kDiverged;
-    std::swap(state_, next_);
-    const CancelScope whole({}, CancelScope::Outer::kIgnored);
-    observe();
+    passed_s_ = time_s;
     return Status::kOk;
 }
 

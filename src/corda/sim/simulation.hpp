@@ -69,6 +69,11 @@ class Simulation {
     /// corda::Error: kUsage if `time_s` is before the state's time or not finite, or after a cancellation.
     Status advance_to(double time_s);
 
+    /// Advances to `time_s` as well, and writes the positions there to `at`, which has room for all
+    /// particles. state(), its figures and the largest ones remain those of the last advance_to(), which
+    /// moves on from here. Throws as advance_to().
+    Status pass(double time_s, State& at);
+
     /// Sets the fields of all states from now on. Throws corda::Error (kInvalidScene) if tensions are
     /// requested that a method does not know (`relaxation`, or `rattle` if bars depend on each other), unless
     /// unknown tensions are allowed.
@@ -89,6 +94,7 @@ class Simulation {
     [[nodiscard]] double energy_scale_j() const { return energy_scale_j_; }
 
   private:
+    Status move_to(double time_s, State& to);
     void observe();
     void read();
     void find_tensions();
@@ -101,6 +107,7 @@ class Simulation {
     std::vector<double> tension_n_;  ///< of state_
     bool knows_tensions_ = false;    ///< false if a method does not know them
     StateFields fields_;
+    double passed_s_ = 0.0;  ///< the last time that was requested
     bool has_diverged_ = false;
     bool is_stepping_ = false;  ///< stays true if an exception ended the steps
     bool conserves_energy_ = true;
@@ -121,7 +128,7 @@ struct Trial {
     double error_estimate_m = 0.0;      ///< up to `reached_s`
     double reached_s = 0.0;             ///< last frame time up to which the error is within the tolerance
     double hundredth_s = 0.0;           ///< the same for a hundredth of the tolerance
-    bool to_the_end = false;            ///< within the tolerance at all frame times
+    bool to_the_end = false;            ///< within the tolerance at all times
     bool diverged = false;              ///< the run or a check diverged or branched after `reached_s`
     bool undecided = false;             ///< rounding decides on a snap of a string after `reached_s`
 };
@@ -147,8 +154,8 @@ enum class StandsStill {
 struct BodyPlan {
     MethodDef method;  ///< with every default filled in: given again, it runs with the same bits
     PlanReason reason = PlanReason::kNamed;
-    /// Estimate of the largest error of a position at the frame times up to the horizon. std::nullopt if no
-    /// method can determine the true motion, or if the scene names the method.
+    /// Estimate of the largest error of a position at any time up to the horizon. std::nullopt if no method
+    /// can determine the true motion, or if the scene names the method.
     std::optional<double> error_estimate_m;
     /// The last frame time at which a run and a much tighter one agree within the tolerance: later positions
     /// are those of one possible motion. std::nullopt if the scene ends before.

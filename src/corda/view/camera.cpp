@@ -103,6 +103,10 @@ double least_height_m(const CameraDef& def, double height_m) {
     return least_m;
 }
 
+double errors_shown(const CameraDef& def) {
+    return def.follow ? 2.0 : 1.0;
+}
+
 CameraDef fit_camera(const CameraDef& def, Vec2 origin_m, std::span<const Drawn> drawn, int width_px,
                      int height_px, const Insets& insets) {
     if (def.center_m && def.height_m) return def;

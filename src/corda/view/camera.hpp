@@ -31,6 +31,10 @@ struct Insets {
 /// The smallest height of a camera's path; `height_m` for keys without one.
 [[nodiscard]] double least_height_m(const CameraDef& def, double height_m);
 
+/// The errors of positions that add up in a picture: a camera that follows something errs with it, in the
+/// worst case the other way.
+[[nodiscard]] double errors_shown(const CameraDef& def);
+
 /// Returns `def` with centre and height filled in so that everything drawn fits into a picture of this size,
 /// in the middle of the space that `insets` leave. Keeps the fields that `def` gives. `origin_m` is the
 /// system's. If one is missing, `drawn` must not be empty.

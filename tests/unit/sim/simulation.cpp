@@ -53,6 +53,27 @@ TEST(Simulation, StaysWhereItDiverged) {
     EXPECT_EQ(run.state().time_s, 2.0);
 }
 
+TEST(Simulation, PassesTimesWithTheSameBitsAndWithoutFigures) {
+    const RopeDef rope = reference::straight_rope(5, 1.0, 60.0);
+    const MethodDef methods[] = {ExactDef{1e-6}, RattleDef{4, 0.01}, with_step(0.01)};
+    for (const MethodDef& method : methods) {
+        Simulation run = test::simulate(rope, WorldDef{}, method);
+        Simulation passing = test::simulate(rope, WorldDef{}, method);
+        State at = passing.state();
+        for (const double time_s : {0.3, 0.317, 0.318}) ASSERT_EQ(passing.pass(time_s, at), Status::kOk);
+        EXPECT_EQ(at.time_s, 0.318);
+        EXPECT_NE(at.x_m, run.state().x_m);
+        EXPECT_EQ(passing.state().x_m, run.state().x_m);
+        EXPECT_EQ(passing.diagnostics().largest.strain, run.diagnostics().largest.strain);
+        EXPECT_EQ(test::code_of([&] { static_cast<void>(passing.advance_to(0.3)); }), ExitCode::kUsage);
+        ASSERT_EQ(run.advance_to(0.5), Status::kOk);
+        ASSERT_EQ(passing.advance_to(0.5), Status::kOk);
+        EXPECT_EQ(passing.state().x_m, run.state().x_m);
+        EXPECT_EQ(passing.state().y_m, run.state().y_m);
+        EXPECT_EQ(passing.diagnostics().largest.energy_error, run.diagnostics().largest.energy_error);
+    }
+}
+
 TEST(Simulation, ShowsNoEnergyErrorIfDampingTakesEnergy) {
     RelaxationDef solver = with_step(0.01);
     Simulation undamped = test::simulate(test::report_rope(10), WorldDef{}, solver);

@@ -23,12 +23,14 @@ namespace corda::sim {
 /// bounds grow.
 using ToleranceOf = std::function<double(const MotionBounds&)>;
 
-/// Requirements of a plan: positions within a tolerance of the truth at every frame time of the timeline.
+/// Requirements of a plan: positions within a tolerance of the truth from the start to the last frame of the
+/// timeline, or to `end_s` if that is later.
 struct PlanDef {
     ToleranceOf tolerance_m;
     Timeline timeline;
     OnProgress on_progress = {};      ///< called for every frame of every trial, and during long ones
     std::function<double()> clock_s;  ///< measures the stepping of each run; empty: not measured
+    double end_s = 0.0;
 };
 
 /// While it lives, check_cancelled() reports `frames_done` of the timeline to on_progress. Both must outlive

@@ -116,11 +116,19 @@ struct End {
     double rest_m = 0.0;
 };
 
+struct HeldRows {
+    std::vector<double> inverse_mass_1_kg;
+    double play_m = 0.0;
+};
+
 /// Walks along straight rows from held particles.
 class Rows {
   public:
     explicit Rows(const System& system)
-        : system_(system), bars_at_(system.particle_count()), inverse_mass_1_kg_(system.inverse_mass_1_kg) {
+        : system_(system),
+          bars_at_(system.particle_count()),
+          held_{system.inverse_mass_1_kg, 0.0},
+          play_m_(system.particle_count()) {
         double farthest_m = 0.0;
         for (std::size_t i = 0; i < system.particle_count(); ++i)
             farthest_m = std::max({farthest_m, std::abs(system.x_m[i]), std::abs(system.y_m[i])});
@@ -131,8 +139,8 @@ class Rows {
         }
     }
 
-    /// Holds what rows between held particles hold until no more is found; returns the inverse masses.
-    std::vector<double> hold() {
+    /// Holds what rows between held particles hold until no more is found.
+    HeldRows hold() {
         std::vector<std::uint32_t> to_do;
         for (std::uint32_t i = 0; i < bars_at_.size(); ++i) {
             if (is_held(i)) to_do.push_back(i);
@@ -143,17 +151,21 @@ class Rows {
             for (const End& first : bars_at_[from]) {
                 count_work(1);
                 if (!find_row(from, first)) continue;
+                const double play_m = play_of_row_m(from);
+                held_.play_m = std::max(held_.play_m, play_m);
+                row_.pop_back();
                 for (const std::uint32_t i : row_) {
-                    inverse_mass_1_kg_[i] = 0.0;
+                    held_.inverse_mass_1_kg[i] = 0.0;
+                    play_m_[i] = play_m;
                     to_do.push_back(i);
                 }
             }
         }
-        return inverse_mass_1_kg_;
+        return held_;
     }
 
   private:
-    [[nodiscard]] bool is_held(std::uint32_t i) const { return inverse_mass_1_kg_[i] == 0.0; }
+    [[nodiscard]] bool is_held(std::uint32_t i) const { return held_.inverse_mass_1_kg[i] == 0.0; }
     [[nodiscard]] Vec2 along(std::uint32_t a, std::uint32_t b) const {
         return {system_.x_m[b] - system_.x_m[a], system_.y_m[b] - system_.y_m[a]};
     }
@@ -171,28 +183,45 @@ class Rows {
         return nearest;
     }
 
+    /// How far the particles of row_ may move in truth. The bars of a row that is arched are longer together
+    /// than its ends are apart, by the squares of their slopes; so much may gather in one corner.
+    [[nodiscard]] double play_of_row_m(std::uint32_t from) const {
+        const Vec2 all = along(from, row_.back());
+        const double span_m = length(all.x, all.y);
+        double longer_m = play_m_[from] + play_m_[row_.back()];  // if the ends approach each other
+        std::uint32_t before = from;
+        for (const std::uint32_t i : row_) {
+            const Vec2 d = along(before, i);
+            const double rise_m = (all.x * d.y - all.y * d.x) / span_m;
+            longer_m += 0.5 * rise_m * rise_m / length(d.x, d.y);
+            before = i;
+        }
+        return 2.0 * std::sqrt(0.5 * span_m * longer_m);
+    }
+
     /// True if the row that starts with this bar is straight and ends at a held particle. Writes the
-    /// particles between to row_.
+    /// particles after `from` to row_.
     [[nodiscard]] bool find_row(std::uint32_t from, const End& first) {
-        row_.clear();
+        row_.assign(1, first.particle);
         const Vec2 direction = along(from, first.particle);
         End end = first;
         double length_m = first.rest_m;
         while (!is_held(end.particle)) {
-            row_.push_back(end.particle);
             count_work(1);
             const std::optional<End> onward = next(end.particle, direction);
             if (!onward) return false;
             length_m += onward->rest_m;
             end = *onward;
+            row_.push_back(end.particle);
         }
         const Vec2 all = along(from, end.particle);
-        return !row_.empty() && length_m <= (1.0 + kSlack) * length(all.x, all.y) + rounding_m_;
+        return row_.size() > 1 && length_m <= (1.0 + kSlack) * length(all.x, all.y) + rounding_m_;
     }
 
     const System& system_;
     std::vector<std::vector<End>> bars_at_;
-    std::vector<double> inverse_mass_1_kg_;
+    HeldRows held_;
+    std::vector<double> play_m_;  ///< of each particle
     std::vector<std::uint32_t> row_;
     double rounding_m_ = 0.0;
 };
@@ -200,7 +229,11 @@ class Rows {
 }  // namespace
 
 std::vector<double> inverse_masses_with_taut_rows_held(const System& system) {
-    return Rows(system).hold();
+    return Rows(system).hold().inverse_mass_1_kg;
+}
+
+double play_of_taut_rows_m(const System& system) {
+    return Rows(system).hold().play_m;
 }
 
 }  // namespace corda::sim

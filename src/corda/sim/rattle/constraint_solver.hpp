@@ -160,4 +160,8 @@ void drift(double span_s, Motion& motion);
 /// keep it.
 [[nodiscard]] std::vector<double> inverse_masses_with_taut_rows_held(const System& system);
 
+/// How far such particles may move in truth, in m: an arch of a row by less than the root of rounding is not
+/// seen in its length, and the row can fall through.
+[[nodiscard]] double play_of_taut_rows_m(const System& system);
+
 }  // namespace corda::sim

@@ -83,6 +83,47 @@ TEST(Trial, HasThreeChecksWhereRoundingMatters) {
     EXPECT_GT(later.trial.largest_difference_m, first.trial.largest_difference_m);
 }
 
+/// A trial of a pendulum that turns back every half second.
+Trial swinging(const Timeline& timeline, double end_s = 0.0) {
+    const RopeDef rope = reference::straight_rope(1, 1.0, 60.0);
+    const System system = build_system({&rope, 1});
+    const WorldDef world{{0.0, -4.0 * 11.367017035003174}};
+    Recording recording(system.particle_count(), timeline.size());
+    Trial trial;
+    trial.method = ExactDef{1e-6};
+    trial.check = ExactDef{1e-10};
+    int passes = 0;
+    run_trial(system, world, {[](const MotionBounds&) { return 1.0; }, timeline, {}, {}, end_s},
+              {true, false}, trial, recording, passes);
+    EXPECT_TRUE(trial.to_the_end);
+    return trial;
+}
+
+TEST(Trial, ComparesBetweenFramesThatAreSparse) {
+    const double often_m = swinging(Timeline(kTrialFrames, 6000)).largest_difference_m;
+    for (const std::int64_t frames_per_s : {1, 2, 4}) {
+        const Timeline sparse(FrameRate(Rational{frames_per_s, 1}), 100 * frames_per_s);
+        EXPECT_GT(swinging(sparse).largest_difference_m, 0.5 * often_m) << frames_per_s;
+    }
+}
+
+TEST(Trial, ComparesAfterTheLastFrame) {
+    const Timeline one_frame(FrameRate(Rational{1, 100}), 0);
+    EXPECT_LT(swinging(one_frame).largest_difference_m, 1e-15);
+    const double often_m = swinging(Timeline(kTrialFrames, 600)).largest_difference_m;
+    const Trial trial = swinging(one_frame, 10.0);
+    EXPECT_GT(trial.largest_difference_m, 0.8 * often_m);
+    EXPECT_EQ(trial.reached_s, 0.0);  // the only frame
+}
+
+TEST(Trial, DoesNotDependOnOtherTimesThatAreRecorded) {
+    const FrameRate rate(Rational{1, 1});
+    const Trial plain = swinging(Timeline(rate, 10));
+    const Trial recorded = swinging(Timeline(rate, 10, {0.25, 3.1, 3.2, 3.3, 9.99}));
+    EXPECT_EQ(recorded.largest_difference_m, plain.largest_difference_m);
+    EXPECT_EQ(recorded.steps, plain.steps);
+}
+
 TEST(Trial, EstimateIncludesTheRoundingOfFarPositions) {
     RopeDef rope = reference::straight_rope(2, 1.0, 30.0);
     rope.origin_m = {1e8, 0.0};

@@ -103,6 +103,24 @@ TEST(TautRows, HoldFarFromTheOriginAndAfterRounding) {
     EXPECT_EQ(std::count(moved.begin(), moved.end(), 0.0), here);
 }
 
+TEST(TautRows, MayMoveAsFarAsTheirArchAllows) {
+    const auto play_m = [](const NetDef& net) { return play_of_taut_rows_m(build_system({}, {&net, 1})); };
+    NetDef net = test::cloth(4, 3, 0.25);
+    EXPECT_EQ(play_m(net), 0.0);
+    // By the lengths of its bars, the row's corner reaches 1.2e-8 m above and below the line.
+    net.points_m[1].y += 1e-8;
+    net.points_m[2].y += 1e-8;
+    EXPECT_EQ(held(net), 4);
+    EXPECT_GT(play_m(net), 2e-8);
+    EXPECT_LT(play_m(net), 3e-8);
+    // A row that ends at this row has what the first one yields.
+    NetDef crossed = test::cloth(3, 5, 0.25);
+    crossed.pinned = {0, 2, 13};
+    EXPECT_EQ(play_m(crossed), 0.0);
+    crossed.points_m[1].y += 1e-8;
+    EXPECT_GT(play_m(crossed), 1e-4);
+}
+
 TEST(TautRows, LeaveRowsThatCanMove) {
     NetDef net = test::cloth(8, 6, 0.1);
     net.pinned = {0};

@@ -1,0 +1,209 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "corda/core/cancel.hpp"
+#include "corda/sim/auto/planner.hpp"
+#include "corda/sim/defs.hpp"
+#include "corda/sim/exact/string/part.hpp"
+#include "corda/sim/solver.hpp"
+
+namespace corda::sim {
+namespace {
+
+/// Number of particles from which a frame of `exact` takes longer than starting a thread (30 us).
+constexpr std::size_t kManyParticles = 100;
+
+/// Moves the free particles of a start by about its rounding in pseudorandom directions. Does not move
+/// strings: whether a link is taut must not change.
+void move_by_rounding(System& system, std::uint32_t order) {
+    const auto moved = [&order](double x_m, double length_m) {
+        order = order * 1664525U + 1013904223U;
+        const double sign = (order >> 31U) == 0U ? 1.0 : -1.0;
+        return x_m + sign * std::numeric_limits<double>::epsilon() * length_m;
+    };
+    for (const Body& body : system.bodies) {
+        if (body.material.is_string) continue;
+        const double length_m = links_length_m(system, body);
+        for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
+            if (system.is_pinned(i)) continue;
+            system.x_m[i] = moved(system.x_m[i], length_m);
+            system.y_m[i] = moved(system.y_m[i], length_m);
+        }
+    }
+}
+
+/// Per link of a string, twice the rounding of lengths at which it comes taut: a run and a check that rounded
+/// alike would both miss what a snap makes of it. Every other check comes taut that much earlier.
+std::vector<double> rounding_of_snaps_m(const System& string, std::size_t check) {
+    constexpr double kOfALink = 2e-14;
+    constexpr double kOfAPlace = 16.0 * std::numeric_limits<double>::epsilon();
+    const double sign = check % 2 == 0 ? 1.0 : -1.0;
+    const double length_m = links_length_m(string, string.bodies.front());
+    std::vector<double> longer_m;
+    for (const Bar& link : string.bars)
+        longer_m.push_back(sign * (kOfALink * link.rest_m + kOfAPlace * length_m));
+    return longer_m;
+}
+
+/// Moves the lengths of the rigid bars of a check by about their rounding, which the run does not know
+/// either: where bars come into line, positions move by its root. Not those of strings.
+void round_lengths(System& system, std::size_t check) {
+    constexpr double kGolden = 0.6180339887498949;
+    for (const Body& body : system.bodies) {
+        if (body.material.is_string || body.material.compliance_1_n > 0.0) continue;
+        for (std::size_t k = 0; k < body.bar_count; ++k) {
+            const double turns = kGolden * static_cast<double>(k + 1 + check * body.bar_count);
+            const double share = 4.0 * (turns - std::floor(turns)) - 2.0;
+            system.bars[body.first_bar + k].rest_m *= 1.0 + share * std::numeric_limits<double>::epsilon();
+        }
+    }
+}
+
+}  // namespace
+
+class Checks::Check : NonCopyable {
+  public:
+    Check(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
+          std::size_t number, const std::vector<double>& longer_m = {})
+        : turn_(turn(number % kMaxCount)), system_(system) {
+        round_lengths(system_, number);
+        if (number > 0) move_by_rounding(system_, static_cast<std::uint32_t>(number));
+        for (std::size_t i = 0; i < system.particle_count(); ++i) {
+            const Vec2 position = turn_.of({system_.x_m[i], system_.y_m[i]});
+            const Vec2 velocity = turn_.of({system_.vx_m_s[i], system_.vy_m_s[i]});
+            system_.x_m[i] = position.x;
+            system_.y_m[i] = position.y;
+            system_.vx_m_s[i] = velocity.x;
+            system_.vy_m_s[i] = velocity.y;
+        }
+        const Forces turned(ForceTerm{turn_.of(forces.uniform_m_s2()), forces.drag_1_s()});
+        const MaterialDef& material = system.bodies.front().material;
+        const auto* exact = std::get_if<ExactDef>(&method);
+        if (exact != nullptr && material.is_string && material.compliance_1_n == 0.0) {
+            auto string = std::make_unique<StringPart>(
+                system_, turned, exact->tolerance,
+                longer_m.empty() ? rounding_of_snaps_m(system, number) : longer_m);
+            string_ = string.get();
+            solver_ = std::move(string);
+        } else {
+            solver_ = make_solver(system_, turned, {&method, 1}, frame_interval_s);
+        }
+        state_ = {0.0, system_.x_m, system_.y_m};
+    }
+
+    [[nodiscard]] double margin_m() const { return string_ == nullptr ? HUGE_VAL : string_->margin_m(); }
+
+    /// kDiverged also if it has branched.
+    Status advance_to(double time_s) {
+        const Status status = solver_->advance_to(time_s, state_);
+        return solver_->has_branched() ? Status::kDiverged : status;
+    }
+    [[nodiscard]] std::uint64_t steps() const { return solver_->steps(); }
+    /// Where it has a particle, in the scene's directions.
+    [[nodiscard]] Vec2 position_m(std::size_t i) const {
+        return Turn{turn_.cosine, -turn_.sine}.of({state_.x_m[i], state_.y_m[i]});
+    }
+
+  private:
+    /// An angle by its cosine and sine.
+    struct Turn {
+        double cosine;
+        double sine;
+        [[nodiscard]] Vec2 of(Vec2 v) const { return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y}; }
+    };
+    static Turn turn(std::size_t number) {
+        constexpr std::array<Turn, kMaxCount> kTurns{
+            {{0.8, 0.6}, {5.0 / 13.0, 12.0 / 13.0}, {24.0 / 25.0, 7.0 / 25.0}}};
+        return kTurns[number];
+    }
+
+    Turn turn_;
+    System system_;
+    std::unique_ptr<Solver> solver_;
+    const StringPart* string_ = nullptr;  ///< solver_, if it is one
+    State state_;
+};
+
+Checks::Checks(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
+               std::size_t count)
+    : in_threads_(system.particle_count() >= kManyParticles) {
+    for (std::size_t number = 0; number < count; ++number)
+        checks_.push_back(std::make_unique<Check>(system, forces, method, frame_interval_s, number));
+}
+
+Checks::Checks(const System& string, const Forces& forces, const ExactDef& method, double longer_m)
+    : in_threads_(string.particle_count() >= kManyParticles), are_alike_(false) {
+    constexpr std::size_t kMaxBits = 3;
+    std::vector<double> longer(string.bars.size());
+    const auto bits = static_cast<std::size_t>(std::bit_width(longer.size() - 1));
+    for (std::size_t number = 0; number < 2 * std::clamp<std::size_t>(bits, 1, kMaxBits); ++number) {
+        for (std::size_t k = 0; k < longer.size(); ++k)
+            longer[k] = ((k >> (number / 2)) + number) % 2 == 0 ? longer_m : -longer_m;
+        checks_.push_back(std::make_unique<Check>(string, forces, method, 0.0, number, longer));
+    }
+}
+
+Checks::~Checks() {
+    is_abandoned_ = true;
+}
+
+void Checks::start(double time_s) {
+    time_s_ = time_s;
+    if (!in_threads_) return;
+    // In this thread, by finish(), if the system has none to give.
+    constexpr auto kPolicy = std::launch::async | std::launch::deferred;
+    for (const auto& check : checks_) {
+        pending_.push_back(std::async(kPolicy, [this, &check, time_s] {
+            const CancelScope wanted([this] { return !is_abandoned_.load(std::memory_order_relaxed); });
+            return check->advance_to(time_s);
+        }));
+    }
+}
+
+Status Checks::finish() {
+    constexpr std::chrono::milliseconds kPatience{10};
+    Status status = Status::kOk;
+    const auto add = [&status](Status one) { status = one == Status::kOk ? status : one; };
+    for (std::size_t i = 0; i < checks_.size(); ++i) {
+        auto waited = std::future_status::deferred;
+        while (in_threads_ && (waited = pending_[i].wait_for(kPatience)) == std::future_status::timeout)
+            check_cancelled();
+        add(waited == std::future_status::deferred ? checks_[i]->advance_to(time_s_) : pending_[i].get());
+    }
+    pending_.clear();
+    steps_ = checks_.front()->steps();
+    return status;
+}
+
+double Checks::difference_m(const State& state) const {
+    constexpr double kPerRounding = 2.0;
+    double largest_m = 0.0;
+    for (std::size_t i = 0; i < state.x_m.size(); ++i) {
+        double distance_m = 0.0;
+        double rounding_m = 0.0;
+        for (std::size_t a = 0; a < checks_.size(); ++a) {
+            const Vec2 at = checks_[a]->position_m(i);
+            const Vec2 apart = at - Vec2{state.x_m[i], state.y_m[i]};
+            distance_m = std::max(length(apart.x, apart.y), distance_m);
+            for (std::size_t b = 0; are_alike_ && b < a; ++b) {
+                const Vec2 differ = at - checks_[b]->position_m(i);
+                rounding_m = std::max(length(differ.x, differ.y), rounding_m);
+            }
+        }
+        distance_m += kPerRounding * rounding_m;
+        if (!(distance_m <= largest_m)) largest_m = std::isnan(distance_m) ? HUGE_VAL : distance_m;
+    }
+    return largest_m;
+}
+
+double Checks::margin_m() const {
+    return checks_.front()->margin_m();
+}
+
+}  // namespace corda::sim
