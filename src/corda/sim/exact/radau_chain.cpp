@@ -26,7 +26,7 @@ constexpr double kShareOfNewton = 0.03;
 /// to and fro without displacing much, until the motion is lost. At a share of 0 to 0.01 swings of 10 000
 /// links are lost at tolerances of 1e-2 and 1e-3.
 constexpr double kShareOfAngle = 0.1;
-constexpr int kMaxIterations = 7;
+constexpr int kMaxNewtonIterations = 7;
 /// Errors in parts of the tolerance that are taken for small ones.
 constexpr double kMinError = 1e-9;
 constexpr double kMinLastError = 1e-2;
@@ -293,7 +293,7 @@ bool solve_stages(RadauChain& r) {
     factorise(r);
     const double enough_m = std::max(kShareOfNewton * r.tolerance_m, kMinCorrection * r.chain_length_m);
     double last_m = 0.0;
-    for (r.iterations = 1; r.iterations <= kMaxIterations; ++r.iterations) {
+    for (r.iterations = 1; r.iterations <= kMaxNewtonIterations; ++r.iterations) {
         count_work(1 + kUpdatesPerIteration * r.links);
         find_residuals(r);
         solve(r);
@@ -305,7 +305,7 @@ bool solve_stages(RadauChain& r) {
             if (!(rate < 1.0)) return false;
             double left_m = correction_m * rate / (1.0 - rate);
             if (left_m <= enough_m) return true;
-            for (int k = r.iterations; k < kMaxIterations; ++k) left_m *= rate;
+            for (int k = r.iterations; k < kMaxNewtonIterations; ++k) left_m *= rate;
             if (left_m > enough_m) return false;
         }
         last_m = correction_m;
@@ -399,7 +399,8 @@ double next_factor(RadauChain& r) {
     const double buckling = r.step_s * buckling_1_s(r);
     if (buckling > 1.0) return -std::max(kMinFactor, kCaution / buckling);
     const double error = std::max(error_m(r) / r.tolerance_m, kMinError);
-    const double safety = kCaution * (2 * kMaxIterations + 1) / (2 * kMaxIterations + r.iterations);
+    const double safety =
+        kCaution * (2 * kMaxNewtonIterations + 1) / (2 * kMaxNewtonIterations + r.iterations);
     double factor = safety / std::sqrt(std::sqrt(error));
     if (!(error <= 1.0)) return -std::max(kMinFactor, factor);
     // Gustafsson's predictive controller.
