@@ -31,6 +31,13 @@ inline RopeDef free_ring(int particles) {
     return rope;
 }
 
+/// The same on its pin, if it resists bending: `exact` refuses it.
+inline RopeDef stiff_ring(int particles) {
+    RopeDef rope = ring(particles);
+    rope.bending_n_m2 = 0.01;
+    return rope;
+}
+
 /// A cloth of columns x rows unit masses `spacing_m` apart that hangs from the two ends of its top row, with
 /// both diagonals in every square as imaginary bars.
 inline NetDef cloth(std::uint32_t columns, std::uint32_t rows, double spacing_m) {

@@ -89,7 +89,7 @@ TEST(Truth, EndsAtTheHorizonOfAChaoticMotion) {
 
 TEST(Truth, SaysIfOnlyOneMethodOrNoneKnowsIt) {
     Subject ring;
-    ring.problem = problem_of(test::free_ring(8), 0.2);
+    ring.problem = problem_of(test::stiff_ring(8), 0.2);
     find_truth(ring);
     EXPECT_THAT(facing(ring, RattleDef{}).truth, HasSubstr("run of itself"));
     EXPECT_TRUE(ring.problem.reference);

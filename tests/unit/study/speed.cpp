@@ -33,7 +33,7 @@ TEST(Sweep, RunsARefusedMethodOncePerSeries) {
     const auto open = sweep_runs(problem_of(reference::straight_rope(5, 1.0, 30.0), 1.0), true);
     EXPECT_GT(count(open, "exact"), 3);
     EXPECT_GT(count(open, "rattle, order 4"), 1);
-    const auto closed = sweep_runs(problem_of(test::free_ring(8), 1.0), true);
+    const auto closed = sweep_runs(problem_of(test::stiff_ring(8), 1.0), true);
     EXPECT_EQ(count(closed, "exact"), 1);
     std::set<std::string> labels;
     for (const SweepRun& run : open) labels.insert(run.label);
@@ -43,7 +43,7 @@ TEST(Sweep, RunsARefusedMethodOncePerSeries) {
 TEST(Speed, OfASceneShowsFailedRuns) {
     Options options;
     options.quick = true;
-    options.scene = scene_with(test::free_ring(6), 0.1);
+    options.scene = scene_with(test::stiff_ring(6), 0.1);
     int calls = 0;
     const nlohmann::json result = measure_speed(options, [&](const std::string& what) {
         EXPECT_FALSE(what.empty());
@@ -52,14 +52,15 @@ TEST(Speed, OfASceneShowsFailedRuns) {
     ASSERT_EQ(result.at("problems").size(), 1U);
     const nlohmann::json& problem = result["problems"][0];
     EXPECT_EQ(problem.at("id"), "own_rope_1");
-    EXPECT_TRUE(problem.at("truth_of_exact").is_null());  // exact cannot run a closed rope without a pin
+    EXPECT_TRUE(problem.at("truth_of_exact").is_null());  // exact cannot run a closed rope that resists bending
     EXPECT_EQ(problem.at("runs").size(), static_cast<std::size_t>(calls - 1));
     int failed = 0;
     for (const nlohmann::json& run : problem["runs"]) {
         EXPECT_GT(run.at("parameter"), 0.0);
         if (run.contains("failure")) {
             ++failed;
-            EXPECT_EQ(run.at("series"), "exact");
+            const std::string series = run.at("series");
+            EXPECT_TRUE(series == "exact" || series.starts_with("relaxation")) << series;
             continue;
         }
         EXPECT_TRUE(run.at("error_rms_over_length").is_number()) << run;
@@ -68,7 +69,7 @@ TEST(Speed, OfASceneShowsFailedRuns) {
         EXPECT_LE(run.at("ms_per_simulated_s"), run.at("ms_largest")) << run;
         EXPECT_GT(run.at("steps"), 0) << run;
     }
-    EXPECT_EQ(failed, 1);
+    EXPECT_EQ(failed, 1 + 2 * 4);  // exact, and reaches and sweeps of relaxation
 }
 
 TEST(Sweep, StepsDivideAFrame) {
