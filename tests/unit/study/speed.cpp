@@ -52,7 +52,8 @@ TEST(Speed, OfASceneShowsFailedRuns) {
     ASSERT_EQ(result.at("problems").size(), 1U);
     const nlohmann::json& problem = result["problems"][0];
     EXPECT_EQ(problem.at("id"), "own_rope_1");
-    EXPECT_TRUE(problem.at("truth_of_exact").is_null());  // exact cannot run a closed rope that resists bending
+    EXPECT_TRUE(
+        problem.at("truth_of_exact").is_null());  // exact cannot run a closed rope that resists bending
     EXPECT_EQ(problem.at("runs").size(), static_cast<std::size_t>(calls - 1));
     int failed = 0;
     for (const nlohmann::json& run : problem["runs"]) {
