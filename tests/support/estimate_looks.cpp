@@ -148,28 +148,6 @@ EstimateCase arched_row(Random& random) {
     return made;
 }
 
-/// A net of rhombi or of four unequal bars, whose bars come into line.
-EstimateCase comes_into_line(Random& random) {
-    const double a_m = pick_real(random, 0.2, 1.0);
-    const double b_m = pick(random, 0, 2) == 0 ? a_m : pick_real(random, 0.2, 1.0);
-    const double angle = pick_real(random, 0.1, 0.6);
-    NetDef net;
-    net.points_m = {{}, {a_m, 0.0}, {b_m * std::cos(angle), -b_m * std::sin(angle)}, {}};
-    net.points_m[3] = net.points_m[1] + net.points_m[2];
-    net.bars = {{0, 1}, {0, 2}, {1, 3}, {2, 3}};
-    net.pinned = {0};
-    if (pick(random, 0, 1) == 0) net.pinned.push_back(1);
-    const double turn_1_s = pick_real(random, 1.0, 6.0);
-    const Vec2 closing = turn_1_s * left_of(net.points_m[2]);
-    net.velocity_m_s = {{}, {}, closing, closing};
-    EstimateCase made;
-    made.scene.nets = {net};
-    add_video(random, made.scene);
-    made.scene.world.duration_s = pick_real(random, 0.05, 0.4);
-    made.looks = 4;
-    return made;
-}
-
 EstimateCase followed_camera(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 2, 10), any_angle(random), 1.0);
     if (pick(random, 0, 1) == 0) throw_it(random, rope);
@@ -186,7 +164,6 @@ std::span<const EstimateFamily> look_families() {
     static const auto families = std::to_array<EstimateFamily>({{"between_frames", between_frames},
                                                                 {"in_step", in_step},
                                                                 {"arched_row", arched_row},
-                                                                {"comes_into_line", comes_into_line},
                                                                 {"followed_camera", followed_camera}});
     return families;
 }
