@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 /// A thread of its own draws no fewer pictures: the context that it needs takes as long as some of them.
 constexpr std::size_t kMinApart = 8;
 
-/// What the threads of a run share.
+/// State that the threads of a run share.
 struct Run {
     const SuiteDef& def;
     const std::vector<std::string>& references;

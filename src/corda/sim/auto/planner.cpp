@@ -56,6 +56,13 @@ constexpr double kCheckStep = 1.0 / 3.0;
 /// Steps divide this, whatever the video's frame interval is, so that a preview shows the same motion.
 constexpr double kNominalIntervalSeconds = 1.0 / 60.0;
 
+/// Of all particles together.
+MotionBounds whole_bounds_of_start(const System& system) {
+    MotionBounds start;
+    start.include({0.0, system.x_m, system.y_m});
+    return start;
+}
+
 bool has_kinks(const System& system) {
     return std::ranges::any_of(system.bodies, [](const Body& body) {
         return body.material.is_string && body.material.compliance_1_n > 0.0;
@@ -107,8 +114,7 @@ std::vector<Candidate> exact_trials(const System& system, const WorldDef& world,
     const TightestDigits& tightest = has_kinks(system) ? kWithKinks : kSmooth;
     // The links of a net are many times as long as its way from end to end.
     const Body& body = system.bodies.front();
-    MotionBounds start;
-    start.include({0.0, system.x_m, system.y_m});
+    const MotionBounds start = whole_bounds_of_start(system);
     const Vec2 extent = start.max_m() - start.min_m();
     const bool is_net = !moves_as_chains(system, body);
     const bool is_rigid_net = is_net && body.material.compliance_1_n == 0.0;
@@ -172,7 +178,7 @@ double updates_of_step(const System& system, const MethodDef& method) {
            static_cast<double>(system.particle_count());
 }
 
-/// What a trial that failed shows about the others.
+/// A trial that failed, and the bound on others that it gives.
 struct Failure {
     std::size_t number;  ///< among the candidates
     double ran_s;        ///< its run, and its checks
@@ -194,8 +200,8 @@ double gain_by_growth_s(const System& system, const Trial& trial, double ran_s, 
 }
 
 /// The trial to run after one that failed: of those that are worth their price, the cheapest that is expected
-/// to hold, or else the one that is expected to reach farthest. std::nullopt: the run of the one that failed
-/// is good enough.
+/// to hold, or else the one that is expected to reach farthest. std::nullopt: none is worth its price, and
+/// the run of the failed trial is drawn.
 ///
 /// A price is the work of the run to the end and of the checks up to the time that is expected to be reached,
 /// less that of ending the run that failed. All are in parts of a whole run of the method that failed.
@@ -206,11 +212,10 @@ std::optional<std::size_t> next_trial(const System& system, const std::vector<Ca
         const double reached_s = candidates[failure.number].trial.reached_s;
         return digits > 0 ? std::min(reached_s + digits * failure.gain_s, end_s) : reached_s;
     };
-    /// What holding to the end, and what a horizon later by the whole motion are worth.
-    constexpr double kWorthOfTheEnd = 200.0;
-    constexpr double kWorthOfAHorizon = 30.0;
-    constexpr double kSmallUpdates = 2e6;     // about 0.1 s: worth any gain
-    constexpr double kLooseTolerance = 1e-6;  // a looser run drifts visibly
+    constexpr double kWorthOfTheEnd = 200.0;   // of holding to the end
+    constexpr double kWorthOfAHorizon = 30.0;  // of a horizon that is later by the whole motion
+    constexpr double kSmallUpdates = 2e6;      // about 0.1 s: worth any gain
+    constexpr double kLooseTolerance = 1e-6;   // a looser run drifts visibly
     const Candidate& failed = candidates[failure.number];
     const double checks_per_step = static_cast<double>(failed.trial.check_steps) /
                                    static_cast<double>(std::max<std::uint64_t>(1, failed.trial.steps));
@@ -229,8 +234,7 @@ std::optional<std::size_t> next_trial(const System& system, const std::vector<Ca
         const double worth =
             hoped_s < end_s ? kWorthOfAHorizon * (hoped_s - failed.trial.reached_s) / end_s : kWorthOfTheEnd;
         const bool is_small = hoped_s > failed.trial.reached_s && price * run_updates <= kSmallUpdates;
-        if (is_small) return next;
-        if (price <= worth) return next;
+        if (is_small || price <= worth) return next;
     }
     const auto* exact = std::get_if<ExactDef>(&failed.trial.method);
     if (exact == nullptr || exact->implicit || exact->tolerance <= kLooseTolerance) return std::nullopt;
@@ -255,20 +259,24 @@ void record(const System& system, const WorldDef& world, const PlanDef& def, Bod
     }
 }
 
-bool is_rigid_graph(const System& system, const Body& body) {
-    return !moves_as_chains(system, body) && body.material.compliance_1_n == 0.0 && !body.material.is_string;
+/// True if a trial of `exact` ended where the rigid bars of a graph come into line.
+bool has_come_into_line(const System& system, const Trial& trial) {
+    const Body& body = system.bodies.front();
+    const bool is_rigid_graph =
+        !moves_as_chains(system, body) && body.material.compliance_1_n == 0.0 && !body.material.is_string;
+    return is_rigid_graph && trial.diverged && std::holds_alternative<ExactDef>(trial.method);
 }
 
 /// Bounds of the work of a run, in updates of a particle, so that every plan ends: about 10 s to begin with,
 /// and 20 minutes for all.
 constexpr double kFirstUpdates = 1e8;
-constexpr double kMostUpdates = 1e10;
+constexpr double kMaxUpdates = 1e10;
 
 TrialKind kind_of(const System& system, const MethodDef& method, double end_s) {
     const double updates = updates_of_step(system, method);
     TrialKind kind;
     kind.first_steps = kFirstUpdates / updates;
-    kind.most_steps_1_s = kMostUpdates / (updates * end_s);
+    kind.most_steps_1_s = kMaxUpdates / (updates * end_s);
     return kind;
 }
 
@@ -313,9 +321,7 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
         plan.trials.push_back(trial);
         if (!ended && !is_implicit(trial.method)) refuse_many_steps(trial, end_s);
         while (!ended && (!next || is_implicit(candidates[*next].trial.method))) next = next.value_or(*i) + 1;
-        const bool is_in_line = trial.diverged && std::holds_alternative<ExactDef>(trial.method) &&
-                                is_rigid_graph(system, system.bodies.front());
-        if (is_in_line) break;
+        if (has_come_into_line(system, trial)) break;
         last = i;
         i = next;
     }
@@ -357,10 +363,9 @@ BodyPlan record_named(const System& system, const WorldDef& world, const PlanDef
 StandsStill why_still(const System& system, const Recording& recording) {
     constexpr double kStill = 1e-9;  // of the length
     const Body& body = system.bodies.front();
-    const auto pins = std::ranges::count(system.inverse_mass_1_kg, 0.0);
-    if (!body.is_net || body.material.compliance_1_n > 0.0 || pins < 2) return StandsStill::kNo;
-    MotionBounds start;
-    start.include({0.0, system.x_m, system.y_m});
+    if (!body.is_net || body.material.compliance_1_n > 0.0 || pin_count(system, body) < 2)
+        return StandsStill::kNo;
+    const MotionBounds start = whole_bounds_of_start(system);
     const double still_m = kStill * links_length_m(system, body);
     const auto near = [still_m](Vec2 a, Vec2 b) {
         return std::abs(a.x - b.x) <= still_m && std::abs(a.y - b.y) <= still_m;
@@ -410,13 +415,11 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
             // A check, whose start is turned, may take bars to depend on each other that the run does not.
             run_until_one_holds(system, world, def, graph_trials(system, world, def), plan, recording);
         } else {
-            MotionBounds start;
-            start.include({0.0, system.x_m, system.y_m});
-            run_until_one_holds(system, world, def, exact_trials(system, world, def.tolerance_m(start)), plan,
+            const double tolerance_m = def.tolerance_m(whole_bounds_of_start(system));
+            run_until_one_holds(system, world, def, exact_trials(system, world, tolerance_m), plan,
                                 recording);
-            const bool is_in_line =
-                plan.trials.back().diverged && is_rigid_graph(system, system.bodies.front());
-            if (is_in_line && !refusal_of(RattleDef{})) {  // which passes lines of bars
+            // `rattle` passes lines of bars.
+            if (has_come_into_line(system, plan.trials.back()) && !refusal_of(RattleDef{})) {
                 const BodyPlan stopped = std::move(plan);
                 plan = {};
                 plan.passes = stopped.passes;
@@ -439,8 +442,7 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
 Plan plan_methods(const System& system, const NamedMethods& named, const WorldDef& world, const PlanDef& def,
                   Recording& recording) {
     Plan plan;
-    MotionBounds known;
-    known.include({0.0, system.x_m, system.y_m});
+    MotionBounds known = whole_bounds_of_start(system);
     const auto count = static_cast<std::int64_t>(system.bodies.size());
     recording.clear();
     for_each_body(system, [&](const System& body, std::size_t i) {
