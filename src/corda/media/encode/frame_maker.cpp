@@ -24,9 +24,13 @@ ReadyFrame FrameMaker::make(std::int64_t k, const Image& image, const Damage& da
     const LogCapture log;
     const PixelRect whole = image.rect();
     const auto parts = frame_ ? std::span(damage) : std::span(&whole, 1);
-    if (!frame_) frame_ = new_frame(av_get_pix_fmt(format_.pixel_format), image.width(), image.height());
-    if (!parts.empty())
-        check_libav(av_frame_make_writable(frame_.get()), ExitCode::kTemporary, "cannot copy a picture");
+    if (!parts.empty()) {
+        Frame next = new_frame(av_get_pix_fmt(format_.pixel_format), image.width(), image.height());
+        if (frame_)
+            check_libav(av_frame_copy(next.get(), frame_.get()), ExitCode::kTemporary,
+                        "cannot copy a picture");
+        frame_ = std::move(next);
+    }
     const bool bleeds = std::string_view(format_.pixel_format) == "yuva420p";
     for (const PixelRect& part : parts) {
         ready.changed.push_back(bleeds ? bleed_.update(image, part) : part);

@@ -35,10 +35,8 @@ class FrameMaker : NonCopyable {
     Format format_;
     std::int64_t first_;
     PictureInfo info_;
-    AlphaBleed bleed_;  ///< of 4:2:0 with alpha
-    // libav shares it by reference count. It is written only while nothing else holds it, and copied
-    // otherwise.
-    Frame frame_;
+    AlphaBleed bleed_;        ///< of 4:2:0 with alpha
+    Frame frame_;             ///< shared with libav by reference count: what differs is drawn into a new one
     std::int64_t last_ = -1;  ///< the number of frame_
 };
 
