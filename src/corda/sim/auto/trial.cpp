@@ -213,6 +213,111 @@ class OtherSnaps {
     std::optional<Checks> runs_;
 };
 
+/// A run beside its checks, with which it is compared at frames and between.
+class CheckedRun : NonCopyable {
+  public:
+    /// Each run that begins to move adds one to `passes`.
+    CheckedRun(const System& system, const WorldDef& world, const PlanDef& def, const Trial& trial,
+               bool is_first, int& passes)
+        : system_(system),
+          def_(def),
+          passes_(passes),
+          forces_(world),
+          run_(system, world, trial.method, def.timeline.step_s()),
+          checks_(system, forces_, trial.check, def.timeline.step_s(),
+                  check_count(system, trial.method, is_first)),
+          comparison_(def.tolerance_m),
+          other_snaps_(system, forces_, def, trial.check),
+          between_(kFirstPoint * def.timeline.step_s()),
+          point_(run_.state()) {}
+
+    [[nodiscard]] double time_s() const { return run_.state().time_s; }
+    [[nodiscard]] std::uint64_t steps() const { return run_.diagnostics().steps; }
+    /// False once one has diverged or they differ for good: then they are compared no more.
+    [[nodiscard]] bool agrees() const { return !has_diverged_ && !comparison_.has_parted(); }
+
+    /// Advances to a time of the timeline and records it. False if the run diverges before.
+    bool record(std::size_t index, Recording& recording) {
+        const Timeline& timeline = def_.timeline;
+        if (index == 0) ++passes_;
+        if (!compare_before(timeline.time_s(index))) return false;
+        const bool compares = agrees() && timeline.is_frame(index);
+        if (compares) checks_.start(timeline.time_s(index));
+        const Status status = recording.advance(run_, timeline, def_.clock_s);
+        const bool is_lost = status == Status::kDiverged || run_.diagnostics().branched_s.has_value();
+        has_diverged_ = has_diverged_ || (is_lost && agrees());
+        if (status == Status::kDiverged) return false;
+        if (!compares) return true;
+        if (index == 0) passes_ += static_cast<int>(checks_.size());
+        compare(run_.state(), true);
+        return true;
+    }
+
+    /// Compares between the last frame and the end of the plan.
+    void compare_until_end() {
+        if (compare_before(def_.end_s) && agrees() && time_s() < def_.end_s) compare_at(def_.end_s);
+    }
+
+    /// Writes how far they agree.
+    void conclude(const MotionBounds& bounds, Trial& trial) const {
+        trial.steps = steps();
+        trial.check_steps = checks_.steps();
+        trial.diverged = has_diverged_;
+        comparison_.conclude(bounds, hidden_m(system_, trial) + play_of_taut_rows_m(system_), trial);
+        trial.error_estimate_m += rounding_m(system_, bounds);
+        trial.to_the_end = trial.to_the_end && !has_diverged_;
+        trial.undecided = !trial.to_the_end && other_snaps_.reached_s(bounds) > trial.reached_s;
+    }
+
+  private:
+    static constexpr double kFirstPoint = 0.0625;  ///< of a frame
+
+    /// Compares at times before `time_s` that are not recorded. False if the run diverges.
+    bool compare_before(double time_s) {
+        while (agrees()) {
+            const std::optional<double> next_s = between_.next_s(time_s);
+            if (!next_s) return true;
+            if (!compare_at(*next_s)) return false;
+        }
+        return true;
+    }
+
+    bool compare_at(double time_s) {
+        check_cancelled();
+        checks_.start(time_s);
+        if (run_.pass(time_s, point_) == Status::kDiverged) {
+            has_diverged_ = true;
+            return false;
+        }
+        compare(point_, false);
+        return true;
+    }
+
+    /// Compares a state of the run with the checks, which are on their way to its time.
+    void compare(const State& state, bool is_frame) {
+        if (checks_.finish() == Status::kDiverged) has_diverged_ = true;
+        passed_.include(state);
+        if (!has_diverged_) {
+            const double difference_m = other_snaps_.difference_m(is_frame, checks_, state, passed_, passes_);
+            comparison_.add(state.time_s, is_frame, difference_m, passed_);
+        }
+        between_.add(state.time_s, steps());
+    }
+
+    const System& system_;
+    const PlanDef& def_;
+    int& passes_;
+    Forces forces_;
+    Simulation run_;
+    Checks checks_;
+    Comparison comparison_;
+    OtherSnaps other_snaps_;
+    Between between_;
+    State point_;
+    MotionBounds passed_;
+    bool has_diverged_ = false;
+};
+
 }  // namespace
 
 CancelScope report_frames(const PlanDef& def, const std::int64_t& frames_done) {
@@ -229,103 +334,38 @@ std::size_t check_count(const System& system, const MethodDef& method, bool is_f
 
 bool run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial& trial,
                Recording& recording, int& passes) {
-    constexpr double kFirstPoint = 0.0625;  // of a frame
     struct TooManySteps {};
-    const Timeline& timeline = def.timeline;
-    const double interval_s = timeline.step_s();
-    const auto total = static_cast<std::int64_t>(timeline.size());
+    const auto total = static_cast<std::int64_t>(def.timeline.size());
     std::int64_t i = 0;
     const CancelScope progress = report_frames(def, i);
-    Simulation run(system, world, trial.method, interval_s);
+    CheckedRun run(system, world, def, trial, kind.is_first, passes);
     bool is_last = false;
     const auto count_steps = [&] {
-        const double most = kind.first_steps + kind.most_steps_1_s * run.state().time_s;
-        if (!is_last && static_cast<double>(run.diagnostics().steps) > most) throw TooManySteps();
+        const double most = kind.first_steps + kind.most_steps_1_s * run.time_s();
+        if (!is_last && static_cast<double>(run.steps()) > most) throw TooManySteps();
+        return true;
     };
-    Checks checks(system, world, trial.check, interval_s, check_count(system, trial.method, kind.is_first));
-    Comparison comparison(def.tolerance_m);
-    const Forces forces(world);
-    OtherSnaps other_snaps(system, forces, def, trial.check);
-    Between between(kFirstPoint * interval_s);
-    State point = run.state();
-    MotionBounds passed;
-    recording.clear();
-    bool is_checked = true;
     bool is_known = false;  // whether the trial holds
     const auto conclude = [&] {
         is_known = true;
-        trial.steps = run.diagnostics().steps;
-        trial.check_steps = checks.steps();
-        comparison.conclude(recording.bounds(), hidden_m(system, trial) + play_of_taut_rows_m(system), trial);
-        trial.error_estimate_m += rounding_m(system, recording.bounds());
-        trial.to_the_end = trial.to_the_end && !trial.diverged;
-        trial.undecided = !trial.to_the_end && other_snaps.reached_s(recording.bounds()) > trial.reached_s;
-        if (!trial.to_the_end && !is_last) is_last = kind.is_last(run.state().time_s);
+        run.conclude(recording.bounds(), trial);
+        if (!trial.to_the_end && !is_last) is_last = kind.is_last(run.time_s());
     };
-    // Compares a state of the run with the checks, which are on their way to its time.
-    const auto compare = [&](const State& state, bool is_frame) {
-        if (checks.finish() == Status::kDiverged) trial.diverged = true;
-        passed.include(state);
-        if (!trial.diverged) {
-            const double difference_m = other_snaps.difference_m(is_frame, checks, state, passed, passes);
-            comparison.add(state.time_s, is_frame, difference_m, passed);
-        }
-        is_checked = !trial.diverged && !comparison.has_parted();
-        between.add(state.time_s, run.diagnostics().steps);
-    };
-    // Passes a time that is not recorded; false if the run diverges before.
-    const auto passes_point = [&](double time_s) {
-        check_cancelled();
-        checks.start(time_s);
-        if (run.pass(time_s, point) == Status::kDiverged) return false;
-        compare(point, false);
-        return true;
-    };
-    const auto passes_all_before = [&](double time_s) {
-        while (is_checked) {
-            const std::optional<double> next_s = between.next_s(time_s);
-            if (!next_s) return true;
-            if (!passes_point(*next_s)) return false;
-        }
-        return true;
-    };
+    recording.clear();
     for (; i < total; ++i) {
         check_cancelled();
-        if (!is_checked && !is_known) conclude();
-        if (!is_checked && !is_last) return true;
-        const auto index = static_cast<std::size_t>(i);
-        bool compares = false;
-        if (i == 0) ++passes;
+        if (!run.agrees() && !is_known) conclude();
+        if (!run.agrees() && !is_last) return true;
         try {
-            const CancelScope limit([&] {
-                count_steps();
-                return true;
-            });
-            if (!passes_all_before(timeline.time_s(index))) {
-                trial.diverged = true;
-                break;
-            }
-            compares = is_checked && timeline.is_frame(index);
-            if (compares) checks.start(timeline.time_s(index));
-            if (recording.advance(run, timeline, def.clock_s) == Status::kDiverged) {
-                trial.diverged = trial.diverged || is_checked;
-                break;
-            }
+            const CancelScope limit(count_steps);
+            if (!run.record(static_cast<std::size_t>(i), recording)) break;
             count_steps();
         } catch (const TooManySteps&) {
-            trial.steps = run.diagnostics().steps;
+            trial.steps = run.steps();
             return false;
         }
-        if (is_checked && run.diagnostics().branched_s) trial.diverged = true;
-        if (!compares) continue;
-        if (i == 0) passes += static_cast<int>(checks.size());
-        compare(run.state(), true);
     }
-    if (i == total && is_checked) {
-        const bool reaches_end = passes_all_before(def.end_s) &&
-                                 (run.state().time_s >= def.end_s || !is_checked || passes_point(def.end_s));
-        trial.diverged = trial.diverged || !reaches_end;
-    }
+    if (i == total) run.compare_until_end();
     conclude();
     return true;
 }
