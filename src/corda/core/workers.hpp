@@ -84,7 +84,11 @@ class OrderedWorkers : NonCopyable {
     /// makes, and again before the next one if `new_maker` threw. If the system starts no thread, none is
     /// made: see has_threads().
     OrderedWorkers(std::int64_t first, std::int64_t end, int threads, std::function<Make()> new_maker)
-        : new_maker_(std::move(new_maker)), end_(end), ahead_(2 * threads), next_(first), taken_(first) {
+        : new_maker_(std::move(new_maker)),
+          end_(end),
+          ahead_(std::int64_t{2} * threads),
+          next_(first),
+          taken_(first) {
         threads_ = start_threads(threads, [this] { work(); });
     }
     ~OrderedWorkers() {

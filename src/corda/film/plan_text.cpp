@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string_view>
 #include <utility>
 
@@ -214,12 +213,15 @@ std::string unknown_tensions_text(const BodyPlan& plan) {
 
 std::vector<MethodGroup> groups_of(const Plan& plan) {
     std::vector<MethodGroup> groups;
-    std::map<std::pair<MethodDef, PlanReason>, std::size_t> group_of;
     for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
         const BodyPlan& body = plan.bodies[i];
-        const auto [entry, is_new] = group_of.try_emplace({body.method, body.reason}, groups.size());
-        if (is_new) groups.push_back({body.method, {}});
-        groups[entry->second].bodies.push_back(i);
+        const auto same = std::ranges::find_if(groups, [&](const MethodGroup& group) {
+            return group.method == body.method && plan.bodies[group.bodies.front()].reason == body.reason;
+        });
+        if (same == groups.end())
+            groups.push_back({body.method, {i}});
+        else
+            same->bodies.push_back(i);
     }
     return groups;
 }

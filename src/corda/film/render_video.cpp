@@ -93,7 +93,7 @@ using Block = std::vector<Drawn>;
 std::int64_t block_length(const VideoDef& video, int jobs) {
     constexpr std::int64_t kMaxFrames = 8;
     constexpr std::int64_t kMaxBytes = 128 << 20;
-    const std::int64_t ahead = 4 * std::int64_t{2 * jobs} * video.width_px * video.height_px;
+    const std::int64_t ahead = std::int64_t{8} * jobs * video.width_px * video.height_px;
     return std::clamp<std::int64_t>(kMaxBytes / ahead, 1, kMaxFrames);
 }
 

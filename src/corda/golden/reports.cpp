@@ -17,9 +17,9 @@ namespace fs = std::filesystem;
 
 /// The verdict and the words for a cause.
 struct Words {
-    Verdict verdict;
-    const char* group;
-    const char* own;
+    Verdict verdict{};
+    const char* group = "";
+    const char* own = "";
     bool is_alone = false;  ///< the own words say it all, and do not follow those of the group
 };
 

@@ -48,7 +48,7 @@ constexpr std::array<Label, 7> kLabels{{
              append(std::span(frame.state.tension_n).subspan(body.first_bar, body.link_count), data);
      }},
     {"energy", false, [](const Film&) { return Dimensions{3}; },
-     [](const Film& film, const film::Instant& frame, std::string& data) {
+     [](const Film&, const film::Instant& frame, std::string& data) {
          for (const film::Series& one : {film::kSeries.kinetic, film::kSeries.potential, film::kSeries.total})
              append(std::array{one.value(frame)}, data);
      }},

@@ -40,7 +40,8 @@ namespace corda::render {
     const float inner = std::min(distance_px + 0.5F, radius);
     const float outer = std::max(distance_px - 0.5F, -radius);
     const float coverage = std::min(std::max(inner - outer, 0.0F), 1.0F);
-    return static_cast<std::uint32_t>(coverage * strength + 0.5F);
+    // Unlike lround(), this is computed for several pixels at once.
+    return static_cast<std::uint32_t>(coverage * strength + 0.5F);  // NOLINT(bugprone-incorrect-roundings)
 }
 
 /// v / 255, rounded to the nearest integer, for 0 <= v <= 255 * 255.
@@ -59,7 +60,8 @@ namespace corda::render {
     const float from = std::max(along - 0.5F, 0.0F);
     const float to = std::min(along + 0.5F, capsule.length);
     const float share = capsule.length == 0.0F ? 1.0F : std::min(std::max(to - from, 0.0F), 1.0F);
-    const auto beside = static_cast<std::uint32_t>(share * 255.0F + 0.5F);
+    const auto beside =
+        static_cast<std::uint32_t>(share * 255.0F + 0.5F);  // NOLINT(bugprone-incorrect-roundings)
     return capsule.tint.weight * (1 + over_255(coverage * beside));
 }
 

@@ -19,7 +19,7 @@ class GroundRows {
   public:
     /// Pixels repeat along a row with this period.
     static constexpr int kPeriodPx = 8;
-    using Row = std::array<std::uint8_t, 4 * kPeriodPx>;
+    using Row = std::array<std::uint8_t, std::size_t{4} * kPeriodPx>;
 
     GroundRows(const Ground& ground, int height);
 

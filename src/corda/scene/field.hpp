@@ -45,7 +45,7 @@ template <class T>
 template <class T>
 [[nodiscard]] std::string toml_of_all(const std::vector<T>& values) {
     if (values.empty()) return "";
-    const std::string first = toml_text(values.front());
+    std::string first = toml_text(values.front());
     for (const T& value : values)
         if (toml_text(value) != first) return toml_text(values);
     return first;

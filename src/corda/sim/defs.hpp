@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <compare>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -18,7 +17,7 @@ struct Vec2 {
     double x = 0;
     double y = 0;
 
-    friend auto operator<=>(const Vec2&, const Vec2&) = default;
+    friend bool operator==(const Vec2&, const Vec2&) = default;
 };
 
 inline Vec2 operator+(Vec2 a, Vec2 b) {
@@ -114,7 +113,7 @@ struct ExactDef {
     /// tolerance and not from the number of links.
     bool implicit = false;
 
-    friend auto operator<=>(const ExactDef&, const ExactDef&) = default;
+    friend bool operator==(const ExactDef&, const ExactDef&) = default;
 };
 
 /// Method `rattle`: RATTLE at a fixed step, composed to a higher order.
@@ -130,7 +129,7 @@ struct RattleDef {
     /// 0.3, 3e-6 at 0.2, 1e-8 at 0.1.
     double guard = 0.2;
 
-    friend auto operator<=>(const RattleDef&, const RattleDef&) = default;
+    friend bool operator==(const RattleDef&, const RattleDef&) = default;
 };
 
 /// Method `relaxation` of the source report.
@@ -142,7 +141,7 @@ struct RelaxationDef {
     double delta = 0.0;                 ///< share of the velocity lost per step; 0 <= delta < 1
     std::optional<Vec2> force_n = {};   ///< force per particle in place of gravity; finite
 
-    friend auto operator<=>(const RelaxationDef&, const RelaxationDef&) = default;
+    friend bool operator==(const RelaxationDef&, const RelaxationDef&) = default;
 };
 
 /// A method with its parameters.

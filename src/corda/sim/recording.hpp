@@ -17,11 +17,11 @@ namespace corda::sim {
 
 /// A quantity of a link: a row of the table in recording.cpp.
 struct QuantityKind {
-    const char* name;    ///< "tension", as in style.color_by
-    const char* unit;    ///< takes a prefix, as in "kN"; empty: a bare number
-    StateFields fields;  ///< of a state, from which the value is computed
+    const char* name = "";  ///< "tension", as in style.color_by
+    const char* unit = "";  ///< takes a prefix, as in "kN"; empty: a bare number
+    StateFields fields{};   ///< of a state, from which the value is computed
     /// The value for bar `k` of a body; NaN if unknown.
-    double (*value)(const System& system, const Body& body, std::size_t k, const State& state);
+    double (*value)(const System& system, const Body& body, std::size_t k, const State& state) = nullptr;
 };
 [[nodiscard]] const QuantityKind& kind_of(Quantity quantity);
 

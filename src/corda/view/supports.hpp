@@ -34,11 +34,11 @@ class Supports {
 
     struct Plate {
         Vec2 pin_m;
-        double width_px;  ///< enough to hide the round end of a line
+        double width_px = 0.0;  ///< enough to hide the round end of a line
     };
     struct Ring {
         Vec2 center_m;
-        double radius_px;
+        double radius_px = 0.0;
     };
 
     void add_pins(const System& system, const Body& body, std::span<const MotionBounds> motion,

@@ -65,8 +65,11 @@ void GifWriter::count_pixel(std::size_t index) {
 }
 
 void GifWriter::add_row(const std::uint8_t* row, int y, int x0, int x1) {
+    constexpr std::ptrdiff_t kPixel = 4;  // bytes
     std::uint8_t* const before = last_.pixel(0, y);
-    const auto differs = [&](int x) { return std::memcmp(row + 4 * x, before + 4 * x, 4) != 0; };
+    const auto differs = [&](int x) {
+        return std::memcmp(row + kPixel * x, before + kPixel * x, kPixel) != 0;
+    };
     for (int x = x0; x < x1; ++x) {
         if (frames_ > 0 && !differs(x)) continue;
         const int first = x;
@@ -79,8 +82,8 @@ void GifWriter::add_row(const std::uint8_t* row, int y, int x0, int x1) {
         const Run run{y, first, x - first};
         const std::size_t bytes = 4 * static_cast<std::size_t>(run.count);
         keep(&run, sizeof run);
-        keep(row + 4 * first, bytes);
-        std::memcpy(before + 4 * first, row + 4 * first, bytes);
+        keep(row + kPixel * first, bytes);
+        std::memcpy(before + kPixel * first, row + kPixel * first, bytes);
     }
 }
 
