@@ -136,6 +136,10 @@ TEST_F(GoldenSuite, ChecksTheOtherScenesDespiteAnInvalidOne) {
     const std::string junit = test::read_file(folder_.file("j.xml"));
     EXPECT_THAT(junit, AllOf(HasSubstr("<testcase classname=\"typo\""), HasSubstr("style.rope_width_px is 9"),
                              HasSubstr("<error type=\"invalid\"")));
+    const auto told = nlohmann::json::parse(run({"--json"}).out);
+    const auto& problem = told["pictures"].back()["problems"].back();
+    EXPECT_EQ(problem["line"], 2);
+    EXPECT_EQ(problem["key"], "worl");
     EXPECT_EQ(run({"--update"}).exit_code, 3);
 }
 

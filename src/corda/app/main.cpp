@@ -17,6 +17,7 @@
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/output_file.hpp"
+#include "corda/core/problem_json.hpp"
 #include "corda/core/removed.hpp"
 #include "interrupt.hpp"
 
@@ -95,18 +96,11 @@ int fail(const Console& console, const Error& error) {
     const int code = static_cast<int>(error.code());
     const std::string message = printable_lines(error.what());
     console.error(message);
-    nlohmann::json problems = nlohmann::json::array();
-    for (const auto& [place, what, remedy, value] : error.problems())
-        problems.push_back({{"source", printable(place.source)},
-                            {"line", place.line},
-                            {"column", place.column},
-                            {"key", printable(place.key)},
-                            {"value", printable(value)},
-                            {"what", printable_lines(what)},
-                            {"remedy", printable_lines(remedy)}});
     try {
         console.report(
-            {{"schema", 1}, {"error", {{"code", code}, {"message", message}, {"problems", problems}}}});
+            {{"schema", 1},
+             {"error",
+              {{"code", code}, {"message", message}, {"problems", problems_json(error.problems())}}}});
     } catch (const Error&) {
         // Standard output takes no more; the exit code still tells.
     }

@@ -178,10 +178,11 @@ Suite load_suite(const SuiteDef& def) {
             } catch (const Error& error) {
                 const bool changes_references = def.update || !def.accepted.empty();
                 if (error.code() != ExitCode::kInvalidScene || changes_references) throw;
-                suite.invalid.push_back(
-                    {.scene = fs::path(file).stem().string(),
-                     .name = file,
-                     .cause = {.kind = Cause::Kind::kInvalidScene, .message = error.what()}});
+                suite.invalid.push_back({.scene = fs::path(file).stem().string(),
+                                         .name = file,
+                                         .cause = {.kind = Cause::Kind::kInvalidScene,
+                                                   .message = error.what(),
+                                                   .problems = error.problems()}});
             }
         }
     }

@@ -52,6 +52,7 @@ struct Cause {
     std::string stored = {};              ///< size, version or renderer of the reference
     std::string now = {};                 ///< ... and of the new picture
     std::string message = {};             ///< of the reader of a scene or reference
+    std::vector<Problem> problems = {};   ///< of an invalid scene
 };
 
 /// The most likely cause of the difference from a kept picture. `settings`: see scene_changes().

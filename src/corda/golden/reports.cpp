@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "corda/core/markup.hpp"
+#include "corda/core/problem_json.hpp"
 #include "corda/core/text.hpp"
 
 namespace corda::golden {
@@ -173,6 +174,7 @@ nlohmann::json picture_json(const Checked& picture) {
                  {"compared_with", is_stale ? "" : fs::path(picture.reference).filename().string()},
                  {"new", picture.drawn_path},
                  {"changed", picture.changed}});
+    if (picture.verdict() == Verdict::kInvalid) json["problems"] = problems_json(picture.cause.problems);
     return json;
 }
 
