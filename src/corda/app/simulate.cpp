@@ -45,9 +45,10 @@ struct SimulateOptions {
 std::vector<film::Series> series_of(const Columns& columns) {
     std::vector<film::Series> all;
     if (columns.energy) all = {film::kSeries.energy_change, film::kSeries.kinetic, film::kSeries.potential};
-    if (columns.diagnostics)
-        all.insert(all.end(), {film::kSeries.energy_error, film::kSeries.strain, film::kSeries.pin_force,
-                               film::kSeries.largest_tension});
+    if (!columns.diagnostics) return all;
+    for (const film::Series& one : {film::kSeries.energy_error, film::kSeries.strain, film::kSeries.pin_force,
+                                    film::kSeries.largest_tension})
+        all.push_back(one);
     return all;
 }
 
