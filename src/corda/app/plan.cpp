@@ -83,9 +83,9 @@ void report_in_words(const Console& console, const Film& film, const std::vector
         const auto reason = horizon_reason(plan.bodies[i]);
         if (!reason) continue;
         const std::string whose = plan.bodies.size() == 1 ? "" : " of " + body_name(film.system(), i);
-        console.result(
-            fmt::format("horizon{}: {:.6g} s; after that the motion cannot be predicted, because {}", whose,
-                        *plan.bodies[i].horizon_s, *reason));
+        console.result(fmt::format(
+            "horizon{}: {:.6g} s; after that {}, because {}", whose, *plan.bodies[i].horizon_s,
+            plan.bodies[i].unchecked ? "no error is known" : "the motion cannot be predicted", *reason));
     }
 }
 

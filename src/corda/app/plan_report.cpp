@@ -62,6 +62,9 @@ void warn_of_horizon(const Console& console, const Film& film) {
     if (first->diverges) {
         console.warning(fmt::format("the simulation{} diverges after {:.6g} s; {} may help", whose,
                                     *plan.horizon_s, film::divergence_advice(film.system())));
+    } else if (first->unchecked) {
+        console.warning(fmt::format("the error estimate{} ends at {:.6g} s: {}", whose, *plan.horizon_s,
+                                    *horizon_reason(*first)));
     } else {
         const double tolerance_px = std::get<AutoDef>(film.scene().solver).tolerance_px;
         console.warning(fmt::format(

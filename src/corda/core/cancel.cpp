@@ -43,7 +43,7 @@ void CancelScope::ask(const CancelScope* scope) {
 }
 
 void check_cancelled() {
-    detail::work_since_check = 0;
+    detail::work_before_check += std::exchange(detail::work_since_check, 0);
     if (innermost == nullptr) return;
     const Callback callback;
     CancelScope::ask(callback.asked());

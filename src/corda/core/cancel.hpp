@@ -14,6 +14,12 @@ constexpr std::uint64_t kUpdatesPerCheck = 10'000;
 
 namespace detail {
 inline thread_local std::uint64_t work_since_check = 0;
+inline thread_local std::uint64_t work_before_check = 0;
+}  // namespace detail
+
+/// All work that this thread has counted.
+inline std::uint64_t work_done() {
+    return detail::work_before_check + detail::work_since_check;
 }
 
 /// Counts work in updates of one particle, about 100 ns each, and now and then calls check_cancelled().

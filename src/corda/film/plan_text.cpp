@@ -177,6 +177,7 @@ std::string reason_text(const BodyPlan& plan) {
 std::optional<std::string> horizon_reason(const BodyPlan& plan) {
     if (!plan.horizon_s) return std::nullopt;
     if (plan.diverges) return "the simulation diverges";
+    if (plan.unchecked) return "estimates of later times would take too much work";
     if (plan.undecided) {
         return "links of a string come taut so nearly at once, or one so barely, that rounding decides which "
                "do";

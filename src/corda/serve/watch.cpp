@@ -104,8 +104,7 @@ std::vector<std::string> plan_lines(const Film& film) {
     std::vector<std::string> lines{system_text(film.system()),
                                    "method: " + plan_text(film.system(), film.plan())};
     if (const auto estimate = error_estimate_text(film)) lines.push_back("error estimate " + *estimate);
-    if (film.plan().horizon_s)
-        lines.push_back(fmt::format("predictability ends at {:.6g} s", *film.plan().horizon_s));
+    if (film.plan().horizon_s) lines.push_back(fmt::format("horizon {:.6g} s", *film.plan().horizon_s));
     for (const std::string& note : film.plan().notes) lines.push_back(note);
     for (const std::string& term : modelled_terms(film.scene(), film.plan()))
         lines.push_back("modelled: " + term);

@@ -124,6 +124,7 @@ struct Trial {
     MethodDef check;  ///< method of the tighter runs
     std::uint64_t steps = 0;
     std::uint64_t check_steps = 0;      ///< of one tighter run
+    double updates = 0.0;               ///< work of all runs up to their comparison, in updates of a particle
     double largest_difference_m = 0.0;  ///< up to `reached_s`
     double error_estimate_m = 0.0;      ///< up to `reached_s`
     double reached_s = 0.0;             ///< last frame time up to which the error is within the tolerance
@@ -131,6 +132,7 @@ struct Trial {
     bool to_the_end = false;            ///< within the tolerance at all times
     bool diverged = false;              ///< the run or a check diverged or branched after `reached_s`
     bool undecided = false;             ///< rounding decides on a snap of a string after `reached_s`
+    bool unchecked = false;             ///< later comparisons would take too much work
 };
 
 /// Reason for the method of a body.
@@ -163,6 +165,7 @@ struct BodyPlan {
     bool diverges = false;  ///< the run ends before the scene does
     StandsStill stands_still = StandsStill::kNo;
     bool undecided = false;     ///< rounding decides on a snap of a string after the horizon
+    bool unchecked = false;     ///< estimates after the horizon would take too much work
     std::vector<Trial> trials;  ///< all that were run, the chosen one last
     int passes = 0;             ///< number of integrations of the motion, including checks and failed trials
 };

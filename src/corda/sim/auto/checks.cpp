@@ -99,11 +99,19 @@ class Checks::Check : NonCopyable {
 
     [[nodiscard]] double margin_m() const { return string_ == nullptr ? HUGE_VAL : string_->margin_m(); }
 
-    /// kDiverged also if it has branched.
-    Status advance_to(double time_s) {
-        const Status status = solver_->advance_to(time_s, state_);
-        return solver_->has_branched() ? Status::kDiverged : status;
+    /// kDiverged also if it has branched, or ended because it would take more work than this.
+    Status advance_to(double time_s, double most_updates) {
+        try {
+            const Status status = work_.run(work_.updates() + most_updates,
+                                            [&] { return solver_->advance_to(time_s, state_); });
+            return solver_->has_branched() ? Status::kDiverged : status;
+        } catch (const TooMuchWork&) {
+            has_ended_ = true;
+            return Status::kDiverged;
+        }
     }
+    [[nodiscard]] bool has_ended() const { return has_ended_; }
+    [[nodiscard]] double updates() const { return work_.updates(); }
     [[nodiscard]] std::uint64_t steps() const { return solver_->steps(); }
     /// Where it has a particle, in the scene's directions.
     [[nodiscard]] Vec2 position_m(std::size_t i) const {
@@ -128,6 +136,8 @@ class Checks::Check : NonCopyable {
     std::unique_ptr<Solver> solver_;
     const StringPart* string_ = nullptr;  ///< solver_, if it is one
     State state_;
+    Meter work_;
+    bool has_ended_ = false;
 };
 
 Checks::Checks(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
@@ -153,15 +163,16 @@ Checks::~Checks() {
     is_abandoned_ = true;
 }
 
-void Checks::start(double time_s) {
+void Checks::start(double time_s, double most_updates) {
     time_s_ = time_s;
+    most_updates_ = most_updates / static_cast<double>(size());
     if (!in_threads_) return;
     // In this thread, by finish(), if the system has none to give.
     constexpr auto kPolicy = std::launch::async | std::launch::deferred;
     for (const auto& check : checks_) {
         pending_.push_back(std::async(kPolicy, [this, &check, time_s] {
             const CancelScope wanted([this] { return !is_abandoned_.load(std::memory_order_relaxed); });
-            return check->advance_to(time_s);
+            return check->advance_to(time_s, most_updates_);
         }));
     }
 }
@@ -174,10 +185,16 @@ Status Checks::finish() {
         auto waited = std::future_status::deferred;
         while (in_threads_ && (waited = pending_[i].wait_for(kPatience)) == std::future_status::timeout)
             check_cancelled();
-        add(waited == std::future_status::deferred ? checks_[i]->advance_to(time_s_) : pending_[i].get());
+        add(waited == std::future_status::deferred ? checks_[i]->advance_to(time_s_, most_updates_)
+                                                   : pending_[i].get());
     }
     pending_.clear();
-    steps_ = checks_.front()->steps();
+    updates_ = 0.0;
+    for (const auto& check : checks_) {
+        updates_ += check->updates();
+        have_ended_ = have_ended_ || check->has_ended();
+    }
+    if (!have_ended_) steps_ = checks_.front()->steps();
     return status;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -184,6 +185,8 @@ struct Failure {
     double ran_s;        ///< its run, and its checks
     /// Upper bound of the time by which others reach farther, per digit; infinite if nothing shows it.
     double gain_s;
+    double run_updates;   ///< work of its run
+    double left_updates;  ///< work that planning may still take
 };
 
 /// Upper bound of the time by which trials reach farther than one that failed after `ran_s`, per digit: that
@@ -221,16 +224,20 @@ std::optional<std::size_t> next_trial(const System& system, const std::vector<Ca
                                    static_cast<double>(std::max<std::uint64_t>(1, failed.trial.steps));
     const double run_updates = updates_of_step(system, failed.trial.method) *
                                static_cast<double>(failed.trial.steps) * end_s / failure.ran_s;
+    const auto whole_price = [&](const Candidate& other) {
+        const auto checks = static_cast<double>(check_count(system, other.trial.method, false));
+        return other.effort / failed.effort * (1.0 + checks * checks_per_step * expected_s(other) / end_s);
+    };
+    const auto fits = [&](const Candidate& other) {
+        return !(whole_price(other) * failure.run_updates * end_s > failure.left_updates * failure.ran_s);
+    };
     std::size_t next = failure.number + 1;
     while (next + 1 < candidates.size() && expected_s(candidates[next]) < end_s) ++next;
     for (; next > failure.number && next < candidates.size(); --next) {
         const Candidate& other = candidates[next];
+        if (!fits(other)) continue;
         const double hoped_s = expected_s(other);
-        const std::size_t checks = check_count(system, other.trial.method, false);
-        const double effort = other.effort / failed.effort;
-        const double price =
-            effort * (1.0 + static_cast<double>(checks) * checks_per_step * hoped_s / end_s) -
-            (1.0 - failure.ran_s / end_s);
+        const double price = whole_price(other) - (1.0 - failure.ran_s / end_s);
         const double worth =
             hoped_s < end_s ? kWorthOfAHorizon * (hoped_s - failed.trial.reached_s) / end_s : kWorthOfTheEnd;
         const bool is_small = hoped_s > failed.trial.reached_s && price * run_updates <= kSmallUpdates;
@@ -239,7 +246,8 @@ std::optional<std::size_t> next_trial(const System& system, const std::vector<Ca
     const auto* exact = std::get_if<ExactDef>(&failed.trial.method);
     if (exact == nullptr || exact->implicit || exact->tolerance <= kLooseTolerance) return std::nullopt;
     for (next = failure.number + 1; next < candidates.size(); ++next)
-        if (std::get<ExactDef>(candidates[next].trial.method).tolerance <= kLooseTolerance) return next;
+        if (std::get<ExactDef>(candidates[next].trial.method).tolerance <= kLooseTolerance)
+            return fits(candidates[next]) ? std::optional(next) : std::nullopt;
     return std::nullopt;
 }
 
@@ -267,19 +275,6 @@ bool has_come_into_line(const System& system, const Trial& trial) {
     return is_rigid_graph && trial.diverged && std::holds_alternative<ExactDef>(trial.method);
 }
 
-/// Bounds of the work of a run, in updates of a particle, so that every plan ends: about 10 s to begin with,
-/// and 20 minutes for all.
-constexpr double kFirstUpdates = 1e8;
-constexpr double kMaxUpdates = 1e10;
-
-TrialKind kind_of(const System& system, const MethodDef& method, double end_s) {
-    const double updates = updates_of_step(system, method);
-    TrialKind kind;
-    kind.first_steps = kFirstUpdates / updates;
-    kind.most_steps_1_s = kMaxUpdates / (updates * end_s);
-    return kind;
-}
-
 [[noreturn]] void refuse_many_steps(const Trial& trial, double end_s) {
     throw Refusal(Refusal::Reason::kManySteps,
                   fmt::format("its motion takes so many steps ({} of {} were not enough for {:.2g} s) that "
@@ -289,22 +284,28 @@ TrialKind kind_of(const System& system, const MethodDef& method, double end_s) {
 
 /// Runs trials, cheapest first, until one holds to the end or no other is worth its price, and makes the last
 /// one the plan. Ends at the first trial of `exact` that diverges for a graph of rigid bars: they have come
-/// into line.
+/// into line. Once trials have taken the work that planning may take, the run that has failed is drawn,
+/// unless its rest would take as much; then the one that failed before it is, if there is one.
 void run_until_one_holds(const System& system, const WorldDef& world, const PlanDef& def,
                          std::vector<Candidate> candidates, BodyPlan& plan, Recording& recording) {
     const double end_s = def.timeline.time_s(def.timeline.size() - 1);
+    double left_updates = def.share * def.most_updates();
+    for (const Trial& trial : plan.trials) left_updates -= trial.updates;
     std::optional<std::size_t> last;
     for (std::optional<std::size_t> i = 0; i;) {
         Trial& trial = candidates[*i].trial;
-        TrialKind kind = kind_of(system, trial.method, end_s);
-        kind.is_first = plan.trials.empty();
+        bool is_too_dear = false;
+        TrialKind kind;
+        kind.is_first = !last;
+        kind.most_updates = left_updates;
         if (is_implicit(trial.method)) {
             kind.most_steps_1_s = candidates.back().effort;
             kind.first_steps = kFirstImplicitSteps + kind.most_steps_1_s * def.timeline.step_s();
         }
         std::optional<std::size_t> next;
-        kind.is_last = [&](double ran_s) {
-            Failure failure{*i, ran_s, gain_by_growth_s(system, trial, ran_s, end_s)};
+        kind.is_last = [&](double ran_s, double run_updates) {
+            Failure failure{*i, ran_s, gain_by_growth_s(system, trial, ran_s, end_s), run_updates,
+                            left_updates - trial.updates};
             // Those with implicit steps say little of others.
             if (last && is_implicit(candidates[*last].trial.method) == is_implicit(trial.method)) {
                 // Frames are a grid, and may be sparse.
@@ -314,21 +315,31 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
                 failure.gain_s = std::min(failure.gain_s, gained_s / digits);
             }
             next = next_trial(system, candidates, failure, end_s);
-            return !next;
+            is_too_dear = !next && run_updates * (end_s - ran_s) > def.most_updates_of_run() * ran_s;
+            return !next && !is_too_dear;
         };
         plan.method = trial.method;
         const bool ended = run_trial(system, world, def, kind, trial, recording, plan.passes);
         plan.trials.push_back(trial);
-        if (!ended && !is_implicit(trial.method)) refuse_many_steps(trial, end_s);
+        left_updates -= trial.updates;
+        if (is_too_dear || (!ended && !is_implicit(trial.method))) {
+            if (!last) refuse_many_steps(trial, end_s);
+            // The run before it takes less.
+            std::swap(plan.trials.back(), *(plan.trials.end() - 2));
+            plan.method = plan.trials.back().method;
+            record(system, world, def, plan, recording);
+            break;
+        }
         while (!ended && (!next || is_implicit(candidates[*next].trial.method))) next = next.value_or(*i) + 1;
         if (has_come_into_line(system, trial)) break;
-        last = i;
+        if (ended) last = i;
         i = next;
     }
     const Trial& chosen = plan.trials.back();
     plan.error_estimate_m = chosen.error_estimate_m;
     if (!chosen.to_the_end) plan.horizon_s = chosen.reached_s;
     plan.undecided = chosen.undecided;
+    plan.unchecked = chosen.unchecked;
     plan.diverges = recording.size() < def.timeline.size();
 }
 
@@ -420,12 +431,9 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
                                 recording);
             // `rattle` passes lines of bars.
             if (has_come_into_line(system, plan.trials.back()) && !refusal_of(RattleDef{})) {
-                const BodyPlan stopped = std::move(plan);
-                plan = {};
-                plan.passes = stopped.passes;
+                plan.horizon_s = std::nullopt;
                 plan.reason = PlanReason::kGraph;
                 run_until_one_holds(system, world, def, graph_trials(system, world, def), plan, recording);
-                plan.trials.insert(plan.trials.begin(), stopped.trials.begin(), stopped.trials.end());
             }
         }
         const bool is_exact = std::holds_alternative<ExactDef>(plan.method);
@@ -444,6 +452,7 @@ Plan plan_methods(const System& system, const NamedMethods& named, const WorldDe
     Plan plan;
     MotionBounds known = whole_bounds_of_start(system);
     const auto count = static_cast<std::int64_t>(system.bodies.size());
+    double updates = 0.0;
     recording.clear();
     for_each_body(system, [&](const System& body, std::size_t i) {
         PlanDef of_body = def;
@@ -456,10 +465,14 @@ Plan plan_methods(const System& system, const NamedMethods& named, const WorldDe
             report_progress(def.on_progress, static_cast<std::int64_t>(i) * total + done, count * total);
             return true;
         };
+        of_body.share =
+            std::max(1.0 - updates / def.most_updates(), static_cast<double>(body.particle_count()) /
+                                                             static_cast<double>(system.particle_count()));
         const auto plan_into = [&](Recording& own) {
             BodyPlan& made =
                 plan.bodies.emplace_back(named[i] ? record_named(body, world, of_body, *named[i], own)
                                                   : plan_body(body, world, of_body, own));
+            for (const Trial& trial : made.trials) updates += trial.updates;
             if (made.reason != PlanReason::kNamed) made.stands_still = why_still(body, own);
             known.include(own.bounds());
         };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/timeline.hpp"
 #include "corda/sim/forces/forces.hpp"
 #include "corda/sim/recording.hpp"
@@ -31,6 +33,42 @@ struct PlanDef {
     OnProgress on_progress = {};      ///< called for every frame of every trial, and during long ones
     std::function<double()> clock_s;  ///< measures the stepping of each run; empty: not measured
     double end_s = 0.0;
+    double share = 1.0;  ///< of the work that planning may take, which is left for this body
+
+    /// Its last time.
+    [[nodiscard]] double last_s() const { return std::max(end_s, timeline.time_s(timeline.size() - 1)); }
+    /// Work that planning may take, in updates of a particle (see count_work()): 15 s, and 1 s per second of
+    /// motion, if an update takes 50 ns.
+    [[nodiscard]] double most_updates() const { return 3e8 + 2e7 * last_s(); }
+    /// Work that a run may take: 15 s, and 120 ms per frame of 1/60 s.
+    [[nodiscard]] double most_updates_of_run() const { return 3e8 + 1.5e8 * last_s(); }
+};
+
+/// Thrown by a Meter.
+struct TooMuchWork {};
+
+/// Measures the work of a run, in updates of a particle.
+class Meter {
+  public:
+    [[nodiscard]] double updates() const { return updates_; }
+
+    /// Adds the work of `part()` in this thread, and returns its result. Throws TooMuchWork once all is more
+    /// than `most_updates`, which is then what updates() returns.
+    template <class Part>
+    auto run(double most_updates, const Part& part) {
+        const double before = updates_ - static_cast<double>(work_done());
+        const auto count = [&] {
+            updates_ = std::min(before + static_cast<double>(work_done()), most_updates);
+            if (updates_ == most_updates) throw TooMuchWork();
+        };
+        const CancelScope limit(count);
+        const auto result = part();
+        count();
+        return result;
+    }
+
+  private:
+    double updates_ = 0.0;
 };
 
 /// While it lives, check_cancelled() reports `frames_done` of the timeline to on_progress. Both must outlive
@@ -42,9 +80,10 @@ struct TrialKind {
     bool is_first = true;      ///< if of `rattle`, it has one check
     double first_steps = 0.0;  ///< that the run may take, and then per second of motion
     double most_steps_1_s = HUGE_VAL;
-    /// Asked once the trial has failed, at the time that its run has reached. If true, the run will be drawn:
-    /// it continues to the end without its checks.
-    std::function<bool(double)> is_last = [](double) { return true; };
+    double most_updates = HUGE_VAL;  ///< work of the run and its checks, after which the checks end
+    /// Asked once the trial has failed, at the time that its run has reached with this work. If true, the run
+    /// will be drawn: it continues to the end without its checks.
+    std::function<bool(double, double)> is_last = [](double, double) { return true; };
 };
 
 /// Number of checks of a trial: `is_first` as in TrialKind.
@@ -53,9 +92,9 @@ struct TrialKind {
 /// Runs the trial's method and its checks side by side, the checks in turned coordinates, so that their
 /// rounding differs from the start on, and records in `trial` how far they agree. A run whose error is not
 /// far above rounding has three checks, and what these differ by counts twice. `recording` is cleared and
-/// receives the run's states. Once the difference is too large for good, the checks end. Each that begins to
-/// move adds one to `passes`. Returns false if the run was ended because it took too many steps. Throws
-/// corda::Refusal.
+/// receives the run's states. Once the difference is too large for good, or the work too large, the checks
+/// end. Each that begins to move adds one to `passes`. Returns false if the run was ended because it took too
+/// many steps or too much work. Throws corda::Refusal.
 bool run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial& trial,
                Recording& recording, int& passes);
 
@@ -81,10 +120,16 @@ class Checks : NonCopyable {
 
     [[nodiscard]] std::size_t size() const { return checks_.size(); }
 
-    /// Begins to advance all to a time; the caller may advance the run meanwhile.
-    void start(double time_s);
-    /// Waits until they are there. kDiverged also if one has branched. Throws what Solver::advance_to throws.
+    /// Begins to advance all to a time; the caller may advance the run meanwhile. They end if all of them
+    /// would take more work than this in updates of a particle.
+    void start(double time_s, double most_updates = HUGE_VAL);
+    /// Waits until they are there. kDiverged also if one has branched or ended. Throws what
+    /// Solver::advance_to throws.
     [[nodiscard]] Status finish();
+    /// True if finish() found that one has ended for too much work.
+    [[nodiscard]] bool have_ended() const { return have_ended_; }
+    /// Work of all up to the last finish().
+    [[nodiscard]] double updates() const { return updates_; }
 
     /// The largest distance of a particle from its positions in the checks plus, if there are several, twice
     /// their own differences. These are rounding; a run that is no better could be near the checks by chance
@@ -103,7 +148,10 @@ class Checks : NonCopyable {
     std::atomic<bool> is_abandoned_ = false;
     bool in_threads_;
     bool are_alike_ = true;  ///< they differ by rounding alone
+    bool have_ended_ = false;
     double time_s_ = 0.0;
+    double most_updates_ = HUGE_VAL;  ///< of each until it is there
+    double updates_ = 0.0;
     std::uint64_t steps_ = 0;
     std::vector<std::unique_ptr<Check>> checks_;
     std::vector<std::future<Status>> pending_;  ///< declared last: it ends before what it uses does

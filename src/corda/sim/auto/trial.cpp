@@ -175,21 +175,25 @@ class OtherSnaps {
 
     /// The largest difference of `state`, the run's, from the checks and from other outcomes.
     double difference_m(bool is_frame, const Checks& checks, const State& state, const MotionBounds& bounds,
-                        int& passes) {
+                        double most_updates, int& passes) {
         const double error_m = alone_.estimate_m() + rounding_m(system_, bounds);
         const double difference_m = checks.difference_m(state);
         alone_.add(state.time_s, is_frame, difference_m, bounds);
         const double margin_m = checks.margin_m();
         if (margin_m <= kSure * error_m && longer_m_ < std::max(kCovers * margin_m, error_m)) {
             longer_m_ = kCovers * std::max(margin_m, error_m);
+            updates_before_ = updates();
             runs_.emplace(system_, forces_, *check_, longer_m_);
             passes += static_cast<int>(runs_->size());
         }
         if (!runs_) return difference_m;
-        runs_->start(state.time_s);
+        runs_->start(state.time_s, most_updates);
         if (runs_->finish() == Status::kDiverged) return HUGE_VAL;
         return std::max(difference_m, runs_->difference_m(state));
     }
+
+    /// Work of the runs.
+    [[nodiscard]] double updates() const { return updates_before_ + (runs_ ? runs_->updates() : 0.0); }
 
     /// The last time at which the checks alone differ by less than a hundredth of the tolerance; 0 if no
     /// other outcomes are followed.
@@ -210,6 +214,7 @@ class OtherSnaps {
     const ExactDef* check_;
     Comparison alone_;  ///< without other outcomes
     double longer_m_ = 0.0;
+    double updates_before_ = 0.0;  ///< work of those that others have replaced
     std::optional<Checks> runs_;
 };
 
@@ -218,14 +223,15 @@ class CheckedRun : NonCopyable {
   public:
     /// Each run that begins to move adds one to `passes`.
     CheckedRun(const System& system, const WorldDef& world, const PlanDef& def, const Trial& trial,
-               bool is_first, int& passes)
+               const TrialKind& kind, int& passes)
         : system_(system),
           def_(def),
+          most_updates_(kind.most_updates),
           passes_(passes),
           forces_(world),
           run_(system, world, trial.method, def.timeline.step_s()),
           checks_(system, forces_, trial.check, def.timeline.step_s(),
-                  check_count(system, trial.method, is_first)),
+                  check_count(system, trial.method, kind.is_first)),
           comparison_(def.tolerance_m),
           other_snaps_(system, forces_, def, trial.check),
           between_(kFirstPoint * def.timeline.step_s()),
@@ -233,17 +239,29 @@ class CheckedRun : NonCopyable {
 
     [[nodiscard]] double time_s() const { return run_.state().time_s; }
     [[nodiscard]] std::uint64_t steps() const { return run_.diagnostics().steps; }
-    /// False once one has diverged or they differ for good: then they are compared no more.
-    [[nodiscard]] bool agrees() const { return !has_diverged_ && !comparison_.has_parted(); }
+    /// Work of the run, and of all.
+    [[nodiscard]] double run_updates() const { return work_.updates(); }
+    [[nodiscard]] double updates() const {
+        return work_.updates() + checks_.updates() + other_snaps_.updates();
+    }
+    /// False once one has diverged, they differ for good or the checks have ended: then they are compared no
+    /// more.
+    [[nodiscard]] bool agrees() const {
+        return !has_diverged_ && !is_unchecked_ && !comparison_.has_parted();
+    }
+    /// The run will be drawn, whatever work it takes.
+    void draw() { is_drawn_ = true; }
 
-    /// Advances to a time of the timeline and records it. False if the run diverges before.
+    /// Advances to a time of the timeline and records it. False if the run diverges before. Throws
+    /// TooMuchWork if the run takes more than its share of PlanDef::most_updates_of_run().
     bool record(std::size_t index, Recording& recording) {
         const Timeline& timeline = def_.timeline;
         if (index == 0) ++passes_;
         if (!compare_before(timeline.time_s(index))) return false;
         const bool compares = agrees() && timeline.is_frame(index);
-        if (compares) checks_.start(timeline.time_s(index));
-        const Status status = recording.advance(run_, timeline, def_.clock_s);
+        if (compares) checks_.start(timeline.time_s(index), left());
+        const Status status = work_.run(most_updates_by(timeline.time_s(index)),
+                                        [&] { return recording.advance(run_, timeline, def_.clock_s); });
         const bool is_lost = status == Status::kDiverged || run_.diagnostics().branched_s.has_value();
         has_diverged_ = has_diverged_ || (is_lost && agrees());
         if (status == Status::kDiverged) return false;
@@ -255,22 +273,35 @@ class CheckedRun : NonCopyable {
 
     /// Compares between the last frame and the end of the plan.
     void compare_until_end() {
-        if (compare_before(def_.end_s) && agrees() && time_s() < def_.end_s) compare_at(def_.end_s);
+        try {
+            if (compare_before(def_.end_s) && agrees() && time_s() < def_.end_s) compare_at(def_.end_s);
+        } catch (const TooMuchWork&) {
+            is_unchecked_ = true;
+        }
     }
 
     /// Writes how far they agree.
     void conclude(const MotionBounds& bounds, Trial& trial) const {
         trial.steps = steps();
         trial.check_steps = checks_.steps();
+        trial.updates = updates();
+        trial.unchecked = is_unchecked_;
         trial.diverged = has_diverged_;
         comparison_.conclude(bounds, hidden_m(system_, trial) + play_of_taut_rows_m(system_), trial);
         trial.error_estimate_m += rounding_m(system_, bounds);
-        trial.to_the_end = trial.to_the_end && !has_diverged_;
+        trial.to_the_end = trial.to_the_end && !has_diverged_ && !is_unchecked_;
         trial.undecided = !trial.to_the_end && other_snaps_.reached_s(bounds) > trial.reached_s;
     }
 
   private:
     static constexpr double kFirstPoint = 0.0625;  ///< of a frame
+
+    /// Work that the checks may still take, and the run until a time.
+    [[nodiscard]] double left() const { return std::max(0.0, most_updates_ - updates()); }
+    [[nodiscard]] double most_updates_by(double time_s) const {
+        constexpr double kAtFirst = 1e8;
+        return is_drawn_ ? HUGE_VAL : kAtFirst + def_.most_updates_of_run() * (time_s / def_.last_s());
+    }
 
     /// Compares at times before `time_s` that are not recorded. False if the run diverges.
     bool compare_before(double time_s) {
@@ -284,8 +315,9 @@ class CheckedRun : NonCopyable {
 
     bool compare_at(double time_s) {
         check_cancelled();
-        checks_.start(time_s);
-        if (run_.pass(time_s, point_) == Status::kDiverged) {
+        checks_.start(time_s, left());
+        const Status status = work_.run(most_updates_by(time_s), [&] { return run_.pass(time_s, point_); });
+        if (status == Status::kDiverged) {
             has_diverged_ = true;
             return false;
         }
@@ -295,10 +327,13 @@ class CheckedRun : NonCopyable {
 
     /// Compares a state of the run with the checks, which are on their way to its time.
     void compare(const State& state, bool is_frame) {
-        if (checks_.finish() == Status::kDiverged) has_diverged_ = true;
+        const Status status = checks_.finish();
+        is_unchecked_ = checks_.have_ended();
+        if (status == Status::kDiverged && !is_unchecked_) has_diverged_ = true;
         passed_.include(state);
-        if (!has_diverged_) {
-            const double difference_m = other_snaps_.difference_m(is_frame, checks_, state, passed_, passes_);
+        if (agrees()) {
+            const double difference_m =
+                other_snaps_.difference_m(is_frame, checks_, state, passed_, left(), passes_);
             comparison_.add(state.time_s, is_frame, difference_m, passed_);
         }
         between_.add(state.time_s, steps());
@@ -306,9 +341,11 @@ class CheckedRun : NonCopyable {
 
     const System& system_;
     const PlanDef& def_;
+    double most_updates_;
     int& passes_;
     Forces forces_;
     Simulation run_;
+    Meter work_;  ///< of run_
     Checks checks_;
     Comparison comparison_;
     OtherSnaps other_snaps_;
@@ -316,6 +353,8 @@ class CheckedRun : NonCopyable {
     State point_;
     MotionBounds passed_;
     bool has_diverged_ = false;
+    bool is_unchecked_ = false;  ///< the checks have ended
+    bool is_drawn_ = false;
 };
 
 }  // namespace
@@ -334,22 +373,22 @@ std::size_t check_count(const System& system, const MethodDef& method, bool is_f
 
 bool run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial& trial,
                Recording& recording, int& passes) {
-    struct TooManySteps {};
     const auto total = static_cast<std::int64_t>(def.timeline.size());
     std::int64_t i = 0;
     const CancelScope progress = report_frames(def, i);
-    CheckedRun run(system, world, def, trial, kind.is_first, passes);
+    CheckedRun run(system, world, def, trial, kind, passes);
     bool is_last = false;
     const auto count_steps = [&] {
         const double most = kind.first_steps + kind.most_steps_1_s * run.time_s();
-        if (!is_last && static_cast<double>(run.steps()) > most) throw TooManySteps();
+        if (!is_last && static_cast<double>(run.steps()) > most) throw TooMuchWork();
         return true;
     };
     bool is_known = false;  // whether the trial holds
     const auto conclude = [&] {
         is_known = true;
         run.conclude(recording.bounds(), trial);
-        if (!trial.to_the_end && !is_last) is_last = kind.is_last(run.time_s());
+        if (!trial.to_the_end && !is_last) is_last = kind.is_last(run.time_s(), run.run_updates());
+        if (is_last) run.draw();
     };
     recording.clear();
     for (; i < total; ++i) {
@@ -360,8 +399,9 @@ bool run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
             const CancelScope limit(count_steps);
             if (!run.record(static_cast<std::size_t>(i), recording)) break;
             count_steps();
-        } catch (const TooManySteps&) {
+        } catch (const TooMuchWork&) {
             trial.steps = run.steps();
+            trial.updates = run.updates();
             return false;
         }
     }

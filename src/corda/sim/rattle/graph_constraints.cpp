@@ -270,6 +270,9 @@ bool correct(BarGraph& graph, double span_s, const Motion& motion) {
     return met;
 }
 
+/// Cost of factorising a matrix that is not symmetric, per bar, in updates of count_work().
+constexpr std::uint64_t kUpdatesPerCrossingStep = 50;
+
 /// Completes a stage after its kick by the full Newton method, whose matrix follows the bars to either side
 /// of their line. False if it does not converge or may have taken the other branch.
 bool cross(BarGraph& graph, CrossingMatrix& crossing, double span_s, Motion& motion, ImpulseVector impulse) {
@@ -288,7 +291,7 @@ bool cross(BarGraph& graph, CrossingMatrix& crossing, double span_s, Motion& mot
     double last_change = kCrossingChange / kShrink * fastest;
     bool met = correct(graph, span_s, motion);
     for (int i = 0; i < kMaxCrossingSteps && !met; ++i) {
-        count_work(kUpdatesPerCheck);
+        count_work(kUpdatesPerCrossingStep * links.size());
         for (const auto& [row, column, factor] : graph.entries) {
             couple(row, column, factor);
             if (row != column) couple(column, row, factor);

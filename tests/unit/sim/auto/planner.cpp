@@ -1,5 +1,7 @@
 #include "corda/sim/auto/planner.hpp"
 
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include "benchmark/study/reference/ropes.hpp"
@@ -183,6 +185,27 @@ TEST(AutoPlans, ChooseAMethodPerBodyAndRecordWhatTheyMove) {
     EXPECT_EQ(mixed.recording.diagnostics().steps, run.diagnostics().steps);
     EXPECT_NEAR(mixed.recording.diagnostics().largest.energy_error.value(),
                 run.diagnostics().largest.energy_error.value(), 1e-15);
+}
+
+/// A chaotic rope on a small share of the budget.
+TEST(AutoPlan, DrawsARunWithoutChecksWhereItsBudgetEnds) {
+    const RopeDef rope = reference::straight_rope(10, 1.0, 90.0);
+    const System system = build_system({&rope, 1});
+    const Timeline timeline(kFrames, 300);
+    PlanDef def{[](const MotionBounds&) { return 1e-4; }, timeline, {}, {}};
+    std::array<BodyPlan, 2> plans;
+    for (BodyPlan& plan : plans) {
+        def.share = 1e-4;
+        Recording recording(system.particle_count(), timeline.size());
+        plan = plan_body(system, WorldDef{}, def, recording);
+        EXPECT_EQ(recording.size(), timeline.size());
+        EXPECT_TRUE(plan.unchecked);
+        ASSERT_TRUE(plan.horizon_s.has_value());
+        EXPECT_LT(*plan.horizon_s, 3.0);
+        EXPECT_LE(plan.error_estimate_m.value(), 1e-4);
+    }
+    EXPECT_EQ(plans[0].horizon_s, plans[1].horizon_s);
+    EXPECT_EQ(plans[0].error_estimate_m, plans[1].error_estimate_m);
 }
 
 bool is_implicit(const MethodDef& method) {

@@ -17,7 +17,7 @@ namespace {
 /// The first trial of a plan, and perhaps the last.
 TrialKind kind_of(bool is_last) {
     TrialKind kind;
-    kind.is_last = [is_last](double) { return is_last; };
+    kind.is_last = [is_last](double, double) { return is_last; };
     return kind;
 }
 
@@ -76,8 +76,8 @@ TEST(Trial, HasThreeChecksWhereRoundingMatters) {
     // These round at 1e-12; the starts of the second and the third are rounded otherwise, too.
     EXPECT_EQ(outcome_of(rope, ExactDef{1e-10}, ExactDef{1e-12}, 1e-3).passes, 4);
     const MethodDef rattle = RattleDef{8, 0.01};
-    const Outcome first = outcome_of(rope, rattle, rattle, 1e-3, {true, false});
-    const Outcome later = outcome_of(rope, rattle, rattle, 1e-3, {false, false});
+    const Outcome first = outcome_of(rope, rattle, rattle, 1e-3, {true});
+    const Outcome later = outcome_of(rope, rattle, rattle, 1e-3, {false});
     EXPECT_EQ(first.passes, 2);
     EXPECT_EQ(later.passes, 4);
     EXPECT_GT(later.trial.largest_difference_m, first.trial.largest_difference_m);
@@ -93,8 +93,8 @@ Trial swinging(const Timeline& timeline, double end_s = 0.0) {
     trial.method = ExactDef{1e-6};
     trial.check = ExactDef{1e-10};
     int passes = 0;
-    run_trial(system, world, {[](const MotionBounds&) { return 1.0; }, timeline, {}, {}, end_s},
-              {true, false}, trial, recording, passes);
+    run_trial(system, world, {[](const MotionBounds&) { return 1.0; }, timeline, {}, {}, end_s}, {true},
+              trial, recording, passes);
     EXPECT_TRUE(trial.to_the_end);
     return trial;
 }
