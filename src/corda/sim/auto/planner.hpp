@@ -37,9 +37,9 @@ struct PlanDef {
 
     /// Its last time.
     [[nodiscard]] double last_s() const { return std::max(end_s, timeline.time_s(timeline.size() - 1)); }
-    /// Work that planning may take, in updates of a particle (see count_work()): 15 s, and 1 s per second of
+    /// Work that planning may take, in updates of a particle (see count_work()): 10 s, and 1 s per second of
     /// motion, if an update takes 50 ns.
-    [[nodiscard]] double most_updates() const { return 3e8 + 2e7 * last_s(); }
+    [[nodiscard]] double most_updates() const { return 2e8 + 2e7 * last_s(); }
     /// Work that a run may take: 15 s, and 120 ms per frame of 1/60 s.
     [[nodiscard]] double most_updates_of_run() const { return 3e8 + 1.5e8 * last_s(); }
 };
