@@ -134,6 +134,9 @@ class Dynamics : public Ode {
     /// The inverse of the shortest time in which a body moves by about its own length, in 1/s; > 0.
     [[nodiscard]] virtual double inverse_timescale_1_s() const = 0;
 
+    /// The inverse of the longest step that damps every vibration of a body, in 1/s.
+    [[nodiscard]] virtual double inverse_stable_step_1_s() const { return 0.0; }
+
     /// Writes the positions of the bodies' particles, relative to the system's origin; leaves the others
     /// alone.
     virtual void positions(const double* y, State& state) const = 0;

@@ -69,8 +69,8 @@ std::vector<ErrorScale> ElasticDynamics::error_scales() const {
     return {{0, 2 * count_, size_m_, 0.0}, {2 * count_, 2 * count_, size_m_ * inverse_timescale_1_s_, 1.0}};
 }
 
-double ElasticDynamics::inverse_timescale_1_s() const {
-    return std::max(inverse_timescale_1_s_, frequency_1_s_ / kStableOmegaH);
+double ElasticDynamics::inverse_stable_step_1_s() const {
+    return frequency_1_s_ / kStableOmegaH;
 }
 
 void ElasticDynamics::derivative(const double* y, double* slope) {

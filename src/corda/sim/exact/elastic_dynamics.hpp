@@ -28,8 +28,9 @@ class ElasticDynamics final : public Dynamics {
     /// themselves.
     [[nodiscard]] std::vector<ErrorScale> error_scales() const override;
 
+    [[nodiscard]] double inverse_timescale_1_s() const override { return inverse_timescale_1_s_; }
     /// Large enough that no step lets the fastest vibration grow.
-    [[nodiscard]] double inverse_timescale_1_s() const override;
+    [[nodiscard]] double inverse_stable_step_1_s() const override;
 
     void derivative(const double* y, double* slope) override;
 

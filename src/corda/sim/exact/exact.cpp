@@ -74,6 +74,18 @@ bool conserves_energy_in(const System& system, const Forces& forces) {
     return forces.conserve_energy() && !(material.is_string && material.compliance_1_n == 0.0);
 }
 
+/// At the limit of stability, steps shrink with the 64th root of the tolerance: those of a check at a ten
+/// thousandth of a run's tolerance are 0.87 times as long, and its errors a third.
+StepControl steps_of(const Dynamics& dynamics, double tolerance) {
+    const double motion_1_s = dynamics.inverse_timescale_1_s();
+    const double vibration_1_s = dynamics.inverse_stable_step_1_s();
+    StepControl control = step_control(std::max(motion_1_s, vibration_1_s), tolerance);
+    if (vibration_1_s == 0.0) return control;
+    const double largest_s = step_control(motion_1_s, tolerance).largest_s;
+    control.largest_s = std::min(largest_s, std::sqrt(std::sqrt(largest_s * motion_1_s)) / vibration_1_s);
+    return control;
+}
+
 }  // namespace
 
 StepControl step_control(double inverse_timescale_1_s, double tolerance) {
@@ -88,7 +100,7 @@ OdePart::OdePart(const System& system, const Forces& forces, std::unique_ptr<Dyn
     : Exact(system, forces, {tolerance}, dynamics->initial_state()),
       dynamics_(std::move(dynamics)),
       integrator_(*dynamics_, dynamics_->initial_state(), dynamics_->error_scales(),
-                  step_control(dynamics_->inverse_timescale_1_s(), tolerance)) {}
+                  steps_of(*dynamics_, tolerance)) {}
 
 Status OdePart::reach(double time_s, State& state) {
     if (integrator_.advance_to(time_s) == Status::kDiverged) return Status::kDiverged;
