@@ -14,6 +14,7 @@
 #include "corda/core/timeline.hpp"
 #include "corda/scene/schema.hpp"
 #include "corda/sim/defs.hpp"
+#include "corda/sim/moving_pins.hpp"
 #include "corda/sim/solver.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/number_text.hpp"
@@ -41,12 +42,13 @@ void validate_frames(const Scene& scene) {
 /// Relative differences of kinetic energy or velocity below this one come from rounded numbers in the scene.
 constexpr double kRounding = 1e-9;
 
-/// Kinetic energy of the free particles in J.
+/// Kinetic energy of the free particles in J, seen from the pins of a body.
 double kinetic_j(const System& system, std::span<const double> vx_m_s, std::span<const double> vy_m_s) {
+    const Vec2 pins_m_s = sim::common_displacement(system).value_or(sim::TimeFunction()).derivative()(0.0);
     double sum_j = 0.0;
     for (std::size_t i = 0; i < system.particle_count(); ++i) {
-        if (!system.is_pinned(i))
-            sum_j += 0.5 * system.mass_kg[i] * (vx_m_s[i] * vx_m_s[i] + vy_m_s[i] * vy_m_s[i]);
+        const Vec2 v = Vec2{vx_m_s[i], vy_m_s[i]} - pins_m_s;
+        if (!system.is_pinned(i)) sum_j += 0.5 * system.mass_kg[i] * dot(v, v);
     }
     return sum_j;
 }
@@ -97,9 +99,10 @@ void add_lost_velocity(const Scene& scene, const System& system, const Plan& pla
         if (!after_j || !(before_j - *after_j > kRounding * before_j)) return;
         const bool is_string = body.bodies.front().material.is_string;
         notes.push_back(fmt::format(
-            "{}: {:.3g} % of the kinetic energy at the start, {:.3g} J of {:.3g} J, is left out: "
+            "{}: {:.3g} % of the kinetic energy at the start{}, {:.3g} J of {:.3g} J, is left out: "
             "velocity along {} of fixed length, which {}; give velocities across them, or a compliance",
-            body_name(system, i), 100.0 * (1.0 - *after_j / before_j), before_j - *after_j, before_j,
+            body_name(system, i), 100.0 * (1.0 - *after_j / before_j),
+            body.moves.empty() ? "" : ", seen from its pins", before_j - *after_j, before_j,
             is_string ? "taut links" : "bars",
             is_string ? "cannot lengthen" : "can neither lengthen nor shorten"));
     });
@@ -238,6 +241,10 @@ void validate(const Scene& scene, std::span<const double> stills_s) {
 
 std::vector<std::string> input_notes(const Scene& scene, const System& system, const Plan& plan) {
     std::vector<std::string> notes;
+    if (scene.world.drag_1_s == 0.0 &&
+        (scene.world.wind_m_s != Vec2{} || scene.world.gusts.amplitude != Vec2{}))
+        notes.emplace_back(
+            "world: wind and gusts change nothing without drag; give world.drag, for instance 0.5");
     add_lost_velocity(scene, system, plan, notes);
     for (std::size_t i = 0; i < scene.ropes.size(); ++i)
         add_rope_notes(body_name(system, i), scene.ropes[i], notes);

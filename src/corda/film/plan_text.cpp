@@ -41,6 +41,9 @@ std::string_view remedy(Refusal::Reason reason) {
             return "give a larger link_length, or a compliance";
         case Reason::kUndecidedString:
             return "change its points or velocity a little";
+        case Reason::kUnlikeMoves:
+            return "give all pins of a rope or net the same waves and path in moves, or use method auto or "
+                   "rattle, or let it stretch by a compliance";
         case Reason::kTautBetweenPins:
             return "let the rope sag between its pins (other points, or a string with a larger link_length), "
                    "or pin the particles between them too";
@@ -114,11 +117,15 @@ std::vector<std::string> force_terms(const Scene& scene, const Materials& materi
                                     relaxation->force_n->x, relaxation->force_n->y));
     }
     for (const sim::ForceKind& kind : sim::force_kinds()) {
-        const bool has_drag = kind.term(scene.world).drag_1_s != 0.0;
-        const std::string text = is_replaced && !has_drag ? "" : kind.text(scene.world);
+        const sim::ForceTerm term = kind.term(scene.world);
+        const bool is_of_air = term.drag_1_s != 0.0 || term.push_m_s2 != Vec2{} || !term.change_m_s2.empty();
+        const std::string text = is_replaced && !is_of_air ? "" : kind.text(scene.world);
         if (!text.empty()) terms.push_back(text);
     }
-    if (sim::Forces(scene.world).drag_1_s() != 0.0) return terms;
+    const auto moves = [](const auto& body) { return !body.moves.empty(); };
+    const bool has_moves = std::ranges::any_of(scene.ropes, moves) || std::ranges::any_of(scene.nets, moves);
+    if (has_moves) terms.emplace_back("pins that move, whose supports do work");
+    if (sim::Forces(scene.world).drag_1_s() != 0.0 || has_moves) return terms;
     if (relaxation != nullptr && relaxation->delta > 0.0)
         terms.push_back(
             fmt::format("damping: a share of {} of the velocity is lost per step", relaxation->delta));

@@ -41,6 +41,47 @@ std::vector<Vec2> read_velocity(const TableReader& body, std::int64_t particles)
     return read_all<Vec2>(*velocity, velocity->at(0).is_list(), particles);
 }
 
+namespace {
+
+MoveDef read_move(const TableReader& table) {
+    MoveDef move;
+    for (const TableReader& wave : table.tables("waves")) read_fields(wave, move.waves.emplace_back());
+    for (const TableReader& key : table.tables("path")) {
+        read_fields(key, move.path.emplace_back());
+        const PathKeyDef& here = move.path.back();
+        if (move.path.size() == 1 && here.by_m != Vec2{})
+            key.add_problem("a path starts at the place of its pin", "give a first key with by = [0, 0]");
+        if (move.path.size() > 1 && here.time_s <= (move.path.end() - 2)->time_s)
+            key.add_problem(fmt::format("{} s after {} s", here.time_s, (move.path.end() - 2)->time_s),
+                            "give times that increase");
+    }
+    if (!table.is_given("waves") && !table.is_given("path"))
+        table.add_problem("neither waves nor a path", "give one of them or both");
+    return move;
+}
+
+}  // namespace
+
+std::vector<MoveDef> read_moves(const TableReader& body, const std::vector<std::uint32_t>& pinned,
+                                const IndexOf& index_of) {
+    std::vector<MoveDef> moves;
+    for (const TableReader& table : body.tables("moves")) {
+        MoveDef move = read_move(table);
+        const auto pin = table.find("pin");
+        const auto index = pin ? index_of(*pin) : std::nullopt;
+        if (!index) continue;
+        move.pin = *index;
+        if (std::ranges::find(pinned, move.pin) == pinned.end())
+            pin->add_problem(fmt::format("particle {} is not pinned", move.pin),
+                             "add it to pinned, or give the index of a pinned one");
+        if (std::ranges::find(moves, move.pin, &MoveDef::pin) != moves.end())
+            pin->add_problem(fmt::format("particle {} moves already", move.pin),
+                             "put its waves and its path into one entry");
+        moves.push_back(std::move(move));
+    }
+    return moves;
+}
+
 BodyStyleDef read_body_style(const TableReader& body, bool takes_link_colors) {
     BodyStyleDef def;
     read_fields(body, def);
@@ -94,9 +135,7 @@ std::optional<std::uint32_t> read_index(const Value& entry, std::int64_t count, 
     return std::nullopt;
 }
 
-std::vector<std::uint32_t> read_pinned(
-    const Value& list, std::int64_t particles,
-    const std::function<std::optional<std::uint32_t>(const Value&)>& index_of) {
+std::vector<std::uint32_t> read_pinned(const Value& list, std::int64_t particles, const IndexOf& index_of) {
     std::vector<std::uint32_t> pinned;
     std::vector<bool> seen(static_cast<std::size_t>(particles));
     for (std::size_t i = 0; i < list.size(); ++i) {

@@ -70,4 +70,20 @@ std::string toml_text(const NetBar& value) {
     return fmt::format("[{}, {}{}]", value.a, value.b, value.is_real ? "" : ", \"imaginary\"");
 }
 
+std::string toml_text(const WaveDef& value) {
+    return fmt::format("{{ amplitude = {}, frequency = {}, phase_deg = {} }}", toml_text(value.amplitude),
+                       toml_text(value.frequency_hz), toml_text(value.phase_deg));
+}
+
+std::string toml_text(const PathKeyDef& value) {
+    return fmt::format("{{ t = {}, by = {} }}", toml_text(value.time_s), toml_text(value.by_m));
+}
+
+std::string toml_text(const MoveDef& value) {
+    std::string text = fmt::format("{{ pin = {}", value.pin);
+    if (!value.waves.empty()) text += ", waves = " + toml_text(value.waves);
+    if (!value.path.empty()) text += ", path = " + toml_text(value.path);
+    return text + " }";
+}
+
 }  // namespace corda::scene

@@ -30,6 +30,9 @@ requires std::is_integral_v<T>
 [[nodiscard]] std::string toml_text(const Rational& value);
 [[nodiscard]] std::string toml_text(const FrameRate& value);
 [[nodiscard]] std::string toml_text(const NetBar& value);
+[[nodiscard]] std::string toml_text(const WaveDef& value);
+[[nodiscard]] std::string toml_text(const PathKeyDef& value);
+[[nodiscard]] std::string toml_text(const MoveDef& value);
 
 template <class T>
 [[nodiscard]] std::string toml_text(const std::vector<T>& values) {

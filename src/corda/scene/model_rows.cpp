@@ -17,13 +17,30 @@ Binding gravity() {
         });
 }
 
+/// The keys of a wave with amplitudes in `unit`.
+std::vector<Key> wave_keys(std::string_view section, std::string_view unit) {
+    constexpr Range kFrequency{.low = 0.0, .high = WaveDef::kMaxFrequencyHz, .low_open = true};
+    return {
+        {section, "amplitude", pair("[x, y]", kCoordinate), unit, required(field(&WaveDef::amplitude)),
+         "the amplitude"},
+        {section, "frequency", number(kFrequency), "Hz", required(field(&WaveDef::frequency_hz)),
+         "the frequency"},
+        {section, "phase_deg", number(), "degrees", field(&WaveDef::phase_deg), "the phase at the start"},
+    };
+}
+
 std::vector<Key> world_keys() {
     return {
         {"world", "gravity", or_pair(number(), "[gx, gy]"), "m/s2", gravity(), "the gravity, downwards"},
         {"world", "duration", number(kAbove0), "s", field(&WorldDef::duration_s), "the duration",
          "a video has the frames that start before it"},
         {"world", "drag", number(kFrom0), "1/s", field(&WorldDef::drag_1_s), "the drag",
-         "velocities decay by exp(-drag t)"},
+         "in still air, velocities decay by exp(-drag t)"},
+        {"world", "wind", pair("[vx, vy]", kCoordinate), "m/s", field(&WorldDef::wind_m_s),
+         "the velocity of the air", "acceleration -drag (v - wind)"},
+        {"world", "gusts", of(Kind::kTable), "", none(),
+         "gusts = { amplitude = [2.0, 0.0], frequency = 0.4 }",
+         "added to the wind: amplitude sin(2 pi frequency t + phase)"},
     };
 }
 
@@ -79,6 +96,9 @@ std::vector<Key> body_keys(std::string_view section, std::vector<Key> keys, std:
         {section, "compliance", number({.low = 0.0, .high = 1e6}), "1/N",
          field_at<Def>([](auto& def) -> auto& { return def.material.compliance_1_n; }),
          "the strain per newton of tension, 1/(E A)", "at 0 all lengths are kept"},
+        {section, "moves", of(Kind::kTables), "", none(),
+         "moves = [{ pin = 0, waves = [{ amplitude = [0.1, 0.0], frequency = 1.0 }] }]",
+         "the sum of waves and a path moves a pinned particle"},
         {section, "color", color, "", otherwise("the next of style.palette", body_color()), "the colour",
          "a list: of its links in turn, with style.color_by = \"link\""},
         {section, "width_px", kIsNet ? number(kWidthPx) : or_pair(number(kWidthPx), "[first, last]"), "px",
@@ -91,6 +111,32 @@ std::vector<Key> body_keys(std::string_view section, std::vector<Key> keys, std:
          "shortened to 0.3 of the width of the picture; in legends, tables and messages too"},
     };
     keys.insert(keys.end(), common.begin(), common.end());
+    return keys;
+}
+
+/// The keys of the moves of ropes' or nets' pins.
+std::vector<Key> move_keys(bool are_of_nets) {
+    const std::string_view moves = are_of_nets ? "net.moves" : "rope.moves";
+    const std::string_view waves = are_of_nets ? "net.moves.waves" : "rope.moves.waves";
+    const std::string_view path = are_of_nets ? "net.moves.path" : "rope.moves.path";
+    Type pin = of(Kind::kInteger);
+    if (are_of_nets) pin = or_pair(pin, "[column, row]");
+    std::vector<Key> keys{
+        {moves, "pin", pin, "",
+         required(body_field<MoveDef>([](const MoveDef& def) { return toml_text(def.pin); })),
+         "the index of a pinned particle", "-1 is the last"},
+        {moves, "waves", of(Kind::kTables), "", none(),
+         "waves = [{ amplitude = [0.1, 0.0], frequency = 1.0, phase_deg = 90.0 }]",
+         "amplitude (sin(2 pi frequency t + phase) - sin(phase))"},
+        {moves, "path", of(Kind::kTables), "", none(),
+         "path = [{ t = 0.0, by = [0.0, 0.0] }, { t = 1.0, by = [1.0, 0.0] }]",
+         "the way of least jerk from key to key, at rest at each"},
+    };
+    for (Key& key : wave_keys(waves, "m")) keys.push_back(std::move(key));
+    keys.push_back(
+        {path, "t", number(kFrom0), "s", required(field(&PathKeyDef::time_s)), "the time of the key"});
+    keys.push_back({path, "by", pair("[dx, dy]", kCoordinate), "m", required(field(&PathKeyDef::by_m)),
+                    "the displacement from the place in the scene"});
     return keys;
 }
 
@@ -119,7 +165,7 @@ std::vector<Key> rope_keys() {
          "the mass added to the last particle"},
         {"rope", "pinned", list(Kind::kInteger, 0), "",
          body_field<RopeDef>([](const RopeDef& def) { return toml_text(def.pinned); }),
-         "the indices of the particles that never move", "-1 is the last, [] a free rope"},
+         "the indices of the particles that rest, or move by moves", "-1 is the last, [] a free rope"},
         {"rope", "closed", boolean, "", field(&RopeDef::closed), "the last point is tied to the first",
          "only for points, at least 3"},
         {"rope", "string", boolean, "", is_string<RopeDef>(), "links pull and never push",
@@ -199,7 +245,8 @@ std::vector<Key> net_keys() {
         {"net", "pinned", pinned, "",
          otherwise("the upper corners of a grid, [0] of points",
                    body_field<NetDef>([](const NetDef& def) { return toml_text(def.pinned); })),
-         "the indices of the particles that never move", "-1 is the last; a grid also takes [column, row]"},
+         "the indices of the particles that rest, or move by moves",
+         "-1 is the last; a grid also takes [column, row]"},
         {"net", "string", boolean, "", is_string<NetDef>(), "bars pull and never push", "needs compliance"},
         {"net.grid", "columns", integer(1, kMaxParticles), "", required(field(&GridDef::columns)),
          "the number of particles in a row", "indices go row by row from the upper left"},
@@ -322,9 +369,10 @@ std::vector<Key> solver_bodies_keys() {
 std::vector<Key> model_rows() {
     std::vector<Key> rows;
     for (const std::vector<Key>& part :
-         {world_keys(), body_keys<RopeDef>("rope", rope_shapes(), "style.rope_width_px"), rope_keys(),
-          rope_shape_keys(), body_keys<NetDef>("net", net_shapes(), "style.net_width_px"), net_keys(),
-          solver_keys(), solver_bodies_keys()})
+         {world_keys(), wave_keys("world.gusts", "m/s"),
+          body_keys<RopeDef>("rope", rope_shapes(), "style.rope_width_px"), rope_keys(), rope_shape_keys(),
+          move_keys(false), body_keys<NetDef>("net", net_shapes(), "style.net_width_px"), net_keys(),
+          move_keys(true), solver_keys(), solver_bodies_keys()})
         rows.insert(rows.end(), part.begin(), part.end());
     return rows;
 }

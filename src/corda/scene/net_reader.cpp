@@ -58,20 +58,21 @@ std::optional<std::uint32_t> read_point_pin(const Value& entry, std::int64_t par
 }
 
 /// By default the two upper corners.
-void read_grid_pins(const TableReader& net, const GridDef& grid, std::vector<std::uint32_t>& pinned) {
-    pinned = {0};
-    if (grid.columns > 1) pinned.push_back(static_cast<std::uint32_t>(grid.columns - 1));
+void read_grid_pins(const TableReader& net, const GridDef& grid, NetDef& def) {
+    const auto index_of = [&](const Value& entry) { return read_grid_pin(entry, grid); };
+    def.pinned = {0};
+    if (grid.columns > 1) def.pinned.push_back(static_cast<std::uint32_t>(grid.columns - 1));
     if (const auto value = net.find("pinned"))
-        pinned = read_pinned(*value, grid_particles(grid),
-                             [&](const Value& entry) { return read_grid_pin(entry, grid); });
+        def.pinned = read_pinned(*value, grid_particles(grid), index_of);
+    def.moves = read_moves(net, def.pinned, index_of);
 }
 
 /// By default the first.
-void read_point_pins(const TableReader& net, std::int64_t particles, std::vector<std::uint32_t>& pinned) {
-    pinned = {0};
-    if (const auto value = net.find("pinned"))
-        pinned = read_pinned(*value, particles,
-                             [&](const Value& entry) { return read_point_pin(entry, particles); });
+void read_point_pins(const TableReader& net, std::int64_t particles, NetDef& def) {
+    const auto index_of = [&](const Value& entry) { return read_point_pin(entry, particles); };
+    def.pinned = {0};
+    if (const auto value = net.find("pinned")) def.pinned = read_pinned(*value, particles, index_of);
+    def.moves = read_moves(net, def.pinned, index_of);
 }
 
 std::optional<NetBar> read_bar(const Value& entry, const NetDef& def) {
@@ -154,11 +155,11 @@ NetDef read_net(const TableReader& net, const std::optional<BodySize>& size, Sha
         const TableReader table = net.table("grid");
         const auto grid = read_grid(table);
         read_grid_points(table, *grid, def, shape);
-        read_grid_pins(net, *grid, def.pinned);
+        read_grid_pins(net, *grid, def);
     } else {
         read_points(net, def.origin_m, def.points_m);
         read_bars(*net.find("bars"), def);
-        read_point_pins(net, size->particles, def.pinned);
+        read_point_pins(net, size->particles, def);
     }
     return def;
 }

@@ -164,9 +164,16 @@ void refuse_origin(const TableReader& body);
 [[nodiscard]] std::optional<std::uint32_t> read_index(const Value& entry, std::int64_t count,
                                                       std::string_view owner);
 
+/// Reads the index of a particle, or adds a problem.
+using IndexOf = std::function<std::optional<std::uint32_t>(const Value&)>;
+
 /// The particles of a list whose entries `index_of` understands; one that is there twice is a problem.
-[[nodiscard]] std::vector<std::uint32_t> read_pinned(
-    const Value& list, std::int64_t particles,
-    const std::function<std::optional<std::uint32_t>(const Value&)>& index_of);
+[[nodiscard]] std::vector<std::uint32_t> read_pinned(const Value& list, std::int64_t particles,
+                                                     const IndexOf& index_of);
+
+/// The moves of pins.
+[[nodiscard]] std::vector<MoveDef> read_moves(const TableReader& body,
+                                              const std::vector<std::uint32_t>& pinned,
+                                              const IndexOf& index_of);
 
 }  // namespace corda::scene

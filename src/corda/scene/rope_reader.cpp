@@ -226,11 +226,11 @@ RopeDef read_rope(const TableReader& rope, const std::optional<BodySize>& size, 
     if (!size) return def;
     def.mass_kg = read_mass(rope, size->particles);
     def.velocity_m_s = read_velocity(rope, size->particles);
-    if (const auto pinned = rope.find("pinned")) {
-        def.pinned = read_pinned(*pinned, size->particles, [&](const Value& entry) {
-            return read_index(entry, size->particles, "the rope has particles");
-        });
-    }
+    const auto index_of = [&](const Value& entry) {
+        return read_index(entry, size->particles, "the rope has particles");
+    };
+    if (const auto pinned = rope.find("pinned")) def.pinned = read_pinned(*pinned, size->particles, index_of);
+    def.moves = read_moves(rope, def.pinned, index_of);
     if (read_rope_shape(rope, def, shape)) read_link_lengths(rope, def);
     return def;
 }

@@ -94,10 +94,15 @@ std::optional<GridDef> grid_of(const NetDef& net) {
                    !net.bars.empty() && !net.bars.back().is_real};
 }
 
+void add_moves(const std::vector<MoveDef>& moves, Table& table) {
+    if (!moves.empty()) table.values.emplace_back("moves", toml_text(moves));
+}
+
 Table rope_table(const RopeDef& rope, const BodyStyleDef& style, const ShapeDef& shape, std::size_t i) {
     const std::string path = fmt::format("rope[{}]", i);
     const auto with = [&](const char* name, const auto& def) {
         Table table = table_of("rope", path, {part(rope), part(style)}, {"points", "origin"});
+        add_moves(rope.moves, table);
         table.inlined.push_back(
             table_of(fmt::format("rope.{}", name), fmt::format("{}.{}", path, name), {part(def)}));
         return table;
@@ -107,7 +112,9 @@ Table rope_table(const RopeDef& rope, const BodyStyleDef& style, const ShapeDef&
             return with("hang", *hang);
         if (const auto line = line_of(rope); line && gives(*line, rope)) return with("line", *line);
     }
-    return table_of("rope", path, {part(rope), part(style)});
+    Table table = table_of("rope", path, {part(rope), part(style)});
+    add_moves(rope.moves, table);
+    return table;
 }
 
 Table net_table(const NetDef& net, const BodyStyleDef& style, const ShapeDef& shape, std::size_t i) {
@@ -118,8 +125,10 @@ Table net_table(const NetDef& net, const BodyStyleDef& style, const ShapeDef& sh
         grid = *given;
     else if (grid = grid_of(net); grid && !gives(*grid, net))
         grid.reset();
-    if (!grid) return table_of("net", path, {part(net), part(style)});
-    Table table = table_of("net", path, {part(net), part(style)}, {"points", "origin", "bars"});
+    Table table = grid ? table_of("net", path, {part(net), part(style)}, {"points", "origin", "bars"})
+                       : table_of("net", path, {part(net), part(style)});
+    add_moves(net.moves, table);
+    if (!grid) return table;
     table.inlined.push_back(table_of("net.grid", path + ".grid", {part(*grid)}));
     return table;
 }
@@ -175,6 +184,8 @@ std::vector<Table> plain_tables(const Scene& scene) {
                               table_of("video", "video", {part(scene.video)}, {"jobs"}),
                               table_of("style", "style", {part(scene.style)}),
                               table_of("overlay", "overlay", {part(scene.overlay)})};
+    if (scene.world.gusts != WaveDef{})
+        tables.push_back(table_of("world.gusts", "world.gusts", {part(scene.world.gusts)}));
     for (std::size_t i = 0; i < scene.overlay.texts.size(); ++i)
         tables.push_back(
             table_of("overlay.texts", fmt::format("overlay.texts[{}]", i), {part(scene.overlay.texts[i])}));

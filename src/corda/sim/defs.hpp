@@ -37,11 +37,43 @@ inline Vec2 left_of(Vec2 a) {
     return {-a.y, a.x};
 }
 
+/// amplitude * sin(2 pi frequency t + phase).
+struct WaveDef {
+    static constexpr double kMaxFrequencyHz = 1000.0;
+
+    Vec2 amplitude;             ///< finite
+    double frequency_hz = 1.0;  ///< > 0, <= kMaxFrequencyHz
+    double phase_deg = 0.0;     ///< finite
+
+    friend bool operator==(const WaveDef&, const WaveDef&) = default;
+};
+
+/// A place on the way of a pin, at which it rests for a moment.
+struct PathKeyDef {
+    double time_s = 0.0;  ///< >= 0
+    Vec2 by_m;            ///< displacement from the place at the start
+
+    friend bool operator==(const PathKeyDef&, const PathKeyDef&) = default;
+};
+
+/// How a pinned particle moves: displacements from its place at the start. No two of a body are for one pin.
+struct MoveDef {
+    std::uint32_t pin = 0;       ///< index of the particle, one of `pinned`
+    std::vector<WaveDef> waves;  ///< in metres, each less its value at t = 0
+    /// The way of least jerk from key to key, at rest at each. Times increase; the first key is at the
+    /// start's place.
+    std::vector<PathKeyDef> path;
+
+    friend bool operator==(const MoveDef&, const MoveDef&) = default;
+};
+
 /// The forces on all bodies of a scene, and its duration.
 struct WorldDef {
     Vec2 gravity_m_s2{0.0, -9.81};  ///< acceleration of every free particle; finite
     double duration_s = 10.0;       ///< > 0
-    double drag_1_s = 0.0;          ///< linear drag: velocities decay by exp(-drag t); >= 0
+    double drag_1_s = 0.0;          ///< linear drag: acceleration -drag (v - wind - gusts); >= 0
+    Vec2 wind_m_s = {};             ///< velocity of the air; finite
+    WaveDef gusts = {};             ///< added to the wind, in m/s
 };
 
 /// Material of a body's bars. Rigid by default.
@@ -63,8 +95,9 @@ struct RopeDef {
     std::vector<Vec2> points_m;   ///< initial positions relative to `origin_m`; at least 2, neighbours apart
     std::vector<double> mass_kg;  ///< one per particle, > 0 (pinned ones too); empty: 1 kg each
     std::vector<Vec2> velocity_m_s;  ///< one per particle at t = 0; empty: 0. Ignored for pinned particles
-    /// Indices of the particles that never move, each < points_m.size().
+    /// Indices of the particles that never move or as `moves` say, each < points_m.size().
     std::vector<std::uint32_t> pinned{0};
+    std::vector<MoveDef> moves = {};
     double payload_kg = 0.0;  ///< added to the mass of the last particle; >= 0
     /// Each particle is joined to the next 1 .. reach particles; >= 1. Bars of reach 1 are the rope's links.
     /// Longer ones are imaginary: they stiffen the rope, and only method `relaxation` can move them.
@@ -98,6 +131,7 @@ struct NetDef {
     std::vector<NetBar> bars;        ///< in the order of relaxation, real ones first; a != b, no pair twice
     std::vector<std::uint32_t> pinned;
     MaterialDef material;
+    std::vector<MoveDef> moves = {};
 };
 
 /// Method `exact`: adaptive and of high order.

@@ -13,6 +13,7 @@
 #include "corda/sim/exact/chain_dynamics.hpp"
 #include "corda/sim/exact/exact.hpp"
 #include "corda/sim/exact/radau_chain.hpp"
+#include "corda/sim/moving_pins.hpp"
 #include "corda/sim/rattle/rattle.hpp"
 #include "corda/sim/relaxation/relaxation.hpp"
 #include "corda/sim/system.hpp"
@@ -58,6 +59,15 @@ void refuse_bars_without_length(const System& system) {
 /// Makes the one solver of a whole system.
 std::unique_ptr<Solver> make_solver_of(const System& system, const Forces& forces, const MethodDef& method,
                                        double frame_interval_s) {
+    if (!system.moves.empty() && common_displacement(system))
+        return solve_in_frame_of_pins(system, forces, method, [&](const System& body, const Forces& there) {
+            return make_solver_of(body, there, method, frame_interval_s);
+        });
+    const bool is_elastic = std::ranges::all_of(
+        system.bodies, [](const Body& body) { return body.material.compliance_1_n > 0.0; });
+    if (!system.moves.empty() && std::holds_alternative<ExactDef>(method) && !is_elastic)
+        throw Refusal(Refusal::Reason::kUnlikeMoves,
+                      "method exact moves a body that does not stretch only if its pins move alike");
     if (!std::holds_alternative<RelaxationDef>(method)) refuse_bars_without_length(system);
     return with_solver(method, [&]<class S>(const auto& def) -> std::unique_ptr<Solver> {
         if constexpr (std::is_same_v<S, Exact>)
@@ -237,9 +247,10 @@ std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces,
                                           " bodies of the system; give one each, or one for all");
     }
     // `relaxation` fills the lanes of a processor with several small bodies.
-    const bool relaxes_all = std::ranges::all_of(methods, [&](const MethodDef& method) {
-        return std::holds_alternative<RelaxationDef>(method) && method == methods.front();
-    });
+    const bool relaxes_all =
+        system.moves.empty() && std::ranges::all_of(methods, [&](const MethodDef& method) {
+            return std::holds_alternative<RelaxationDef>(method) && method == methods.front();
+        });
     if (count == 1 || relaxes_all) return make_solver_of(system, forces, methods.front(), frame_interval_s);
     std::vector<Part> parts;
     for_each_body(system, [&](const System& body, std::size_t i) {

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "corda/sim/defs.hpp"
+#include "corda/sim/forces/forces.hpp"
+#include "corda/sim/moving_pins.hpp"
 
 namespace corda {
 namespace {
@@ -28,6 +32,25 @@ bool is_positive(double value) {
     return value > 0.0 && std::isfinite(value);
 }
 
+void check_moves(const std::vector<MoveDef>& moves, const std::vector<std::uint32_t>& pinned,
+                 const std::string& what) {
+    const auto has_order = [](const PathKeyDef& a, const PathKeyDef& b) { return a.time_s < b.time_s; };
+    std::set<std::uint32_t> pins;
+    for (const MoveDef& move : moves) {
+        require(std::ranges::find(pinned, move.pin) != pinned.end(), what, "moves names no pinned particle");
+        require(pins.insert(move.pin).second, what, "moves names a pin twice");
+        for (const WaveDef& wave : move.waves)
+            if (const char* const problem = sim::problem_of(wave)) fail(what, problem);
+        for (const PathKeyDef& key : move.path)
+            require(is_finite(key.by_m) && key.time_s >= 0.0 && std::isfinite(key.time_s), what,
+                    "a key of a path is not finite or before 0 s");
+        require(std::ranges::adjacent_find(move.path, std::not_fn(has_order)) == move.path.end(), what,
+                "the times of a path do not increase");
+        require(move.path.empty() || move.path.front().by_m == Vec2{}, what,
+                "a path starts at another place");
+    }
+}
+
 /// Checks the fields common to ropes and nets.
 template <class BodyDef>
 void check_body(const BodyDef& def, const std::string& what) {
@@ -45,6 +68,7 @@ void check_body(const BodyDef& def, const std::string& what) {
     for (const std::uint32_t index : def.pinned)
         if (index >= count)
             fail(what, "pinned names particle " + std::to_string(index) + " of " + std::to_string(count));
+    check_moves(def.moves, def.pinned, what);
     const double compliance = def.material.compliance_1_n;
     require(compliance >= 0.0 && std::isfinite(compliance), what, "material.compliance_1_n is not >= 0");
 }
@@ -96,6 +120,13 @@ Body append_particles(const BodyDef& def, System& system) {
         system.inverse_mass_1_kg[first + index] = 0.0;
         system.vx_m_s[first + index] = 0.0;
         system.vy_m_s[first + index] = 0.0;
+    }
+    for (MoveDef move : def.moves) {
+        move.pin += static_cast<std::uint32_t>(first);
+        const Vec2 velocity_m_s = sim::displacement_of(move).derivative()(0.0);
+        system.vx_m_s[move.pin] = velocity_m_s.x;
+        system.vy_m_s[move.pin] = velocity_m_s.y;
+        system.moves.push_back(std::move(move));
     }
     Body body;
     body.first_particle = first;
@@ -199,6 +230,11 @@ System alone(const System& system, const Body& body) {
     for (Bar& bar : part.bars) {
         bar.a -= shift;
         bar.b -= shift;
+    }
+    for (MoveDef move : system.moves) {
+        if (move.pin < first || move.pin >= first + count) continue;
+        move.pin -= shift;
+        part.moves.push_back(std::move(move));
     }
     part.bodies = {body};
     part.bodies.front().first_particle = 0;

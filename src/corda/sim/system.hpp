@@ -55,14 +55,15 @@ struct System {
     Vec2 origin_m;
     std::vector<double> x_m;
     std::vector<double> y_m;
-    std::vector<double> vx_m_s;  ///< 0 for a pinned particle
+    std::vector<double> vx_m_s;  ///< of a pinned particle as well: 0 unless it moves
     std::vector<double> vy_m_s;
     std::vector<double> mass_kg;            ///< payload included
     std::vector<double> inverse_mass_1_kg;  ///< 0 means pinned
     /// In the order of relaxation: body by body, all bars of reach 1, then all of reach 2, ...
     std::vector<Bar> bars;
-    std::vector<Bend> bends;   ///< empty unless a rope resists bending
-    std::vector<Body> bodies;  ///< ropes, then nets
+    std::vector<Bend> bends;          ///< empty unless a rope resists bending
+    std::vector<Body> bodies;         ///< ropes, then nets
+    std::vector<MoveDef> moves = {};  ///< of pinned particles of the system
 
     [[nodiscard]] std::size_t particle_count() const { return x_m.size(); }
     [[nodiscard]] std::size_t link_count() const;
@@ -125,7 +126,7 @@ struct State {
     std::vector<double> x_m;
     std::vector<double> y_m;
     // Empty unless requested: see StateFields.
-    std::vector<double> vx_m_s = {};  ///< 0 for a pinned particle
+    std::vector<double> vx_m_s = {};  ///< 0 for a pinned particle that does not move
     std::vector<double> vy_m_s = {};
     /// One per bar of the system: positive ones pull. 0 between two pins; NaN if it is not determined.
     std::vector<double> tension_n = {};
@@ -182,6 +183,7 @@ class Refusal : public Error {
         kRigidBendingString,  ///< `exact`: a string of rigid links that resists bending
         kStretchedString,     ///< `exact`: a rigid link of a string longer at the start than its rest length
         kUndecidedString,     ///< `exact`: the start does not determine which links of a string are taut
+        kUnlikeMoves,         ///< pins of one body move differently
         kTautBetweenPins,     ///< a rigid rope that is straight between two pins
         kImplicit,            ///< `exact`, implicit: a body that does not hang from a pin, or resists bending
         kDependentBars,       ///< `rattle`: the lengths of rigid bars depend on each other

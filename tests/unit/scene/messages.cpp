@@ -46,6 +46,13 @@ nets = 1 | 3:1 nets | did you mean "net"?
 [camera]\nfoo = 1 | 4:1 camera.foo | valid keys: center, height, margin
 @rope
 strng = true | 4:1 rope[0].strng | did you mean "string"?
+moves = [{ pin = 1, path = [{ t = 0, by = [0, 0] }] }] | 4:18 rope[0].moves[0].pin | particle 1 is not pinned; add it to pinned, or give the index of a pinned one | pin = 1 => pin = 0 ; + pinned = [1]
+moves = [{ pin = 9, path = [{ t = 0, by = [0, 0] }] }] | 4:18 rope[0].moves[0].pin | 9 is out of range; the rope has particles
+moves = [{ pin = 0 }] | 4:10 rope[0].moves[0] | neither waves nor a path; give one of them or both
+moves = [{ path = [{ t = 0, by = [0, 0] }] }] | 4:10 rope[0].moves[0].pin | missing; give the index of a pinned particle
+moves = [{ pin = 0, path = [{ t = 0, by = [1, 0] }] }] | 4:29 rope[0].moves[0].path[0] | a path starts at the place of its pin; give a first key with by = [0, 0] | [1, 0] => [0, 0]
+moves = [{ pin = 0, path = [{ t = 1, by = [0, 0] }, { t = 1, by = [1, 0] }] }] | 4:53 rope[0].moves[0].path[1] | 1 s after 1 s; give times that increase | t = 1, by = [1, 0] => t = 2, by = [1, 0]
+moves = [{ pin = 0, path = [{ t = 0, by = [0, 0] }] }, { pin = 0, path = [{ t = 0, by = [0, 0] }] }] | 4:64 rope[0].moves[1].pin | particle 0 moves already; put its waves and its path into one entry
 grid = 1 | 4:1 rope[0].grid | it is a key of net
 a.b.c.d.e.f.g.h.a.b.c.d.e.f.g.h.a.b.c.d.e.f.g.h.a.b.c.d.e.f.g.h.a = 1 | - | swing.toml:4:64: a key of more than 32 parts
 mass = | - | see https://toml.io for the syntax | mass = => mass = 1
@@ -244,6 +251,10 @@ constexpr const char* kOfWorldAndVideo = R"(
 duration = 0 | 4:12 world.duration | 0 is not > 0; give the duration in s, > 0
 duration = inf | 4:12 world.duration | inf is not a finite number
 drag = -0.5 | 4:8 world.drag | -0.5 is not >= 0; give the drag in 1/s, >= 0
+wind = 3 | 4:8 world.wind | 3 is an integer, not [vx, vy]; give the velocity of the air in m/s
+gusts = 3 | 4:9 world.gusts | 3 is an integer, not a table; give gusts = {
+gusts = { frequency = 1 } | 4:9 world.gusts.amplitude | missing; give the amplitude in m/s
+gusts = { amplitude = [1, 0], frequency = 1e6 } | 4:43 world.gusts.frequency | 1000000 is not <= 1000; give the frequency in Hz, > 0 and <= 1000
 gravity = [1] | 4:11 world.gravity | a list of 1, not [gx, gy]
 gravity = [1, nan] | 4:15 world.gravity[1] | nan is not a finite
 gravity = "down" | 4:11 world.gravity | or [gx, gy]

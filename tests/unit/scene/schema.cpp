@@ -27,6 +27,12 @@ Scene scene_with(const Key& key, const std::string& value) {
     std::string toml = "schema = 1\n" + rope;
     if (key.section == "rope.hang") toml = "schema = 1\n[[rope]]\nhang = { links = 3, length = 1 }\n";
     if (key.section == "net" || key.section == "net.grid") toml = "schema = 1\n" + grid;
+    const std::string moves =
+        "moves = [{ pin = 0, waves = [{ amplitude = [1, 0], frequency = 1 }], path = [{ t = 0, by = [0, 0] "
+        "}] }]\n";
+    if (key.section.starts_with("rope.moves")) toml += moves;
+    if (key.section.starts_with("net.moves")) toml = "schema = 1\n" + grid + moves;
+    if (key.section == "world.gusts") toml += "[world.gusts]\namplitude = [1, 0]\nfrequency = 1\n";
     if (key.section == "solver.bodies") toml += "[[solver.bodies]]\nropes = [0]\nmethod = \"exact\"\n";
     if (key.section == "solver.bodies" && key.name == "ropes")
         toml = "schema = 1\n" + grid + rope + "[[solver.bodies]]\nnets = [0]\nmethod = \"exact\"\n";
@@ -35,7 +41,8 @@ Scene scene_with(const Key& key, const std::string& value) {
     if (key.section == "camera.path") toml += "[[camera.path]]\nt = 0\n";
     if (key.section == "golden" && key.name != "at") toml += "[golden]\nat = [0]\n";
     std::string path = path_of(key);
-    if (const std::size_t list = path.find("[]"); list != std::string::npos) path.insert(list + 1, "0");
+    for (std::size_t list = path.find("[]"); list != std::string::npos; list = path.find("[]"))
+        path.insert(list + 1, "0");
     std::vector<Setting> settings;
     if (!key.methods.empty()) {
         const std::string table = path.substr(0, path.rfind('.'));

@@ -41,6 +41,13 @@ TEST(WriteScene, EveryKeyComesBack) {
                  "closed = true\ncompliance = 1e-5\nlink_length = [1, 1.1, 1.2, 1.30000000001]\n"
                  "color = [\"#ff000080\", \"#00ff0080\"]\nwidth_px = 3.5\n"
                  "[style]\ncolor_by = \"link\"\n"),
+             scene::rope_with(
+                 "pinned = [0, -1]\nmoves = [{ pin = 0, waves = [{ amplitude = [0.1, 0], frequency = 1.2, "
+                 "phase_deg = 90 }] }, { pin = -1, path = [{ t = 0.5, by = [0, 0] }, { t = 1, by = [0.1, 3] "
+                 "}] }]\n[world]\ndrag = 0.5\nwind = [1, -2]\n"
+                 "gusts = { amplitude = [2, 0.1], frequency = 0.4, phase_deg = 30 }\n"),
+             scene::grid_with(
+                 "moves = [{ pin = [2, 0], waves = [{ amplitude = [0, 1], frequency = 2 }] }]\n"),
              scene::square_with("origin = [0.1, 1e8]\nbending = 1e-3\n"),
              scene::grid_with(
                  "compliance = 1e-4\nstring = true\n[solver]\nmethod = \"relaxation\"\nreach = 3\n"),

@@ -11,6 +11,7 @@
 #include "corda/sim/auto/planner.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/exact/string/part.hpp"
+#include "corda/sim/moving_pins.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::sim {
@@ -82,15 +83,22 @@ class Checks::Check : NonCopyable {
             system_.vx_m_s[i] = velocity.x;
             system_.vy_m_s[i] = velocity.y;
         }
-        const Forces turned(ForceTerm{turn_.of(forces.uniform_m_s2()), forces.drag_1_s()});
+        for (MoveDef& move : system_.moves) {
+            for (WaveDef& wave : move.waves) wave.amplitude = turn_.of(wave.amplitude);
+            for (PathKeyDef& key : move.path) key.by_m = turn_.of(key.by_m);
+        }
+        const Forces turned = forces.turned({turn_.cosine, turn_.sine});
         const MaterialDef& material = system.bodies.front().material;
         const auto* exact = std::get_if<ExactDef>(&method);
         if (exact != nullptr && material.is_string && material.compliance_1_n == 0.0) {
-            auto string = std::make_unique<StringPart>(
-                system_, turned, exact->tolerance,
-                longer_m.empty() ? rounding_of_snaps_m(system, number) : longer_m);
-            string_ = string.get();
-            solver_ = std::move(string);
+            const auto make = [&](const System& body, const Forces& there) {
+                auto string = std::make_unique<StringPart>(
+                    body, there, exact->tolerance,
+                    longer_m.empty() ? rounding_of_snaps_m(system, number) : longer_m);
+                string_ = string.get();
+                return string;
+            };
+            solver_ = solve_in_frame_of_pins(system_, turned, method, make);
         } else {
             solver_ = make_solver(system_, turned, {&method, 1}, frame_interval_s);
         }

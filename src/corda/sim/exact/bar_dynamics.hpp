@@ -25,6 +25,8 @@ class BarDynamics final : public Dynamics {
     /// themselves.
     [[nodiscard]] std::vector<ErrorScale> error_scales() const override;
     [[nodiscard]] double inverse_timescale_1_s() const override { return inverse_timescale_1_s_; }
+    void set_time(double time_s) override { forces_.set_time(time_s); }
+    [[nodiscard]] double next_key_s(double time_s) const override { return forces_.next_key_s(time_s); }
     /// NaN where bars depend on each other.
     void derivative(const double* y, double* slope) override;
     /// Gives the bars their lengths, and no velocities along them, by the least change weighted with the

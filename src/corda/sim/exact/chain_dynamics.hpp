@@ -120,6 +120,10 @@ class ChainDynamics final : public Dynamics {
     /// inverse of its time scale and by themselves.
     [[nodiscard]] std::vector<ErrorScale> error_scales() const override;
     [[nodiscard]] double inverse_timescale_1_s() const override { return chains_.inverse_timescale_1_s; }
+    void set_time(double time_s) override { chains_.forces.set_time(time_s); }
+    [[nodiscard]] double next_key_s(double time_s) const override {
+        return chains_.forces.next_key_s(time_s);
+    }
     void derivative(const double* y, double* slope) override;
     /// Makes directions unit vectors and closes chains between two pins.
     void project(double* y) override;

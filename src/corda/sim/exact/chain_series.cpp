@@ -216,10 +216,12 @@ const ChainSeries::Code& ChainSeries::code_of(bool is_wide) {
 
 ChainSeries::ChainSeries(const Chains& chains, const Chain& chain, std::size_t order, bool is_wide)
     : code_(&code_of(is_wide)),
+      forces_(&chains.forces),
       first_link_(chain.first_link),
       link_stride_(chains.link_count()),
       first_extra_(chain.first_extra),
       starts_pinned_(chain.starts_pinned),
+      ends_pinned_(chain.ends_pinned),
       inverse_timescale_1_s_(chain.inverse_timescale_1_s),
       length_m_(chain.length_m) {
     assert(order >= kLastTerms && order <= kMaxSeriesOrder);
@@ -231,9 +233,9 @@ ChainSeries::ChainSeries(const Chains& chains, const Chain& chain, std::size_t o
     a.drag_1_s = chains.forces.drag_1_s();
     a.first_inverse_mass_1_kg = chain.inverse_mass_1_kg;
     const Vec2 uniform_m_s2 = chains.forces.uniform_m_s2();
-    if (chain.starts_pinned) a.start_pull_m_s2 = uniform_m_s2;
-    if (chain.ends_pinned) a.end_pull_m_s2 = uniform_m_s2;
-    if (!chain.starts_pinned) a.fall_m_s2 = uniform_m_s2;
+    if (chain.starts_pinned) a.start_pull_m_s2.first = uniform_m_s2;
+    if (chain.ends_pinned) a.end_pull_m_s2.first = uniform_m_s2;
+    if (!chain.starts_pinned) a.fall_m_s2.first = uniform_m_s2;
     a.rows.resize(a.blocks * SeriesArrays::kRows * (order + 1));
     double** const arrays[] = {&a.length_m,
                                &a.inverse_length_1_m,
@@ -258,7 +260,7 @@ ChainSeries::ChainSeries(const Chains& chains, const Chain& chain, std::size_t o
     }
 }
 
-void ChainSeries::expand(const double* y, double unit_s) {
+void ChainSeries::expand(const double* y, double unit_s, double time_s) {
     const double* const c = y + first_link_;
     const double* const s = c + link_stride_;
     const double* const omega = s + link_stride_;
@@ -269,6 +271,14 @@ void ChainSeries::expand(const double* y, double unit_s) {
         arrays_.vy[0] = y[first_extra_ + 3];
     }
     arrays_.unit_s = unit_s;
+    if (forces_->depend_on_time()) {
+        SeriesArrays::Pull pull;
+        pull.changes = arrays_.order;
+        forces_->expand(time_s, unit_s, pull.term);
+        pull.first = pull.term[0];
+        (starts_pinned_ ? arrays_.start_pull_m_s2 : arrays_.fall_m_s2) = pull;
+        if (ends_pinned_) arrays_.end_pull_m_s2 = pull;
+    }
     code_->expand(arrays_, c, s, omega);
 }
 
@@ -330,12 +340,15 @@ Status ChainPart::step(Mover& mover) {
     const StepControl& control = mover.control;
     const double last_s = mover.end_s - mover.start_s;
     const double unit_s = last_s > 0.0 ? last_s : control.first_s;
-    mover.series.expand(state_.data(), unit_s);
+    mover.series.expand(state_.data(), unit_s, mover.end_s);
     const double longest_step_s = mover.series.longest_step_s(control.tolerance);
     const double largest_s = last_s > 0.0 ? std::min(kMaxStepGrowth * last_s, control.largest_s) : unit_s;
     // Time and step agree to the last bit, so that no rounding of times adds up.
     double wanted_s = std::min(longest_step_s, largest_s);
     if (mover.chain.ends_pinned) wanted_s = past_line(mover, wanted_s);
+    // Two steps up to a key are of one length, so that none is very short.
+    const double rest_s = dynamics_.next_key_s(mover.end_s) - mover.end_s;
+    if (2.0 * wanted_s > rest_s) wanted_s = wanted_s < rest_s ? 0.5 * rest_s : rest_s;
     const double end_s = mover.end_s + wanted_s;
     const double step_s = end_s - mover.end_s;
     if (!(step_s > control.smallest_s) || mover.steps == StepControl::kMaxSteps) return Status::kDiverged;
@@ -387,6 +400,7 @@ Status ChainPart::reach(double time_s, State& state) {
         mover.series.evaluate(time_s - mover.start_s, output_.data());
         if (mover.chain.ends_pinned) close_between_pins(dynamics_.chains(), mover.chain, output_.data());
     }
+    dynamics_.set_time(time_s);
     dynamics_.positions(output_.data(), state);
     return Status::kOk;
 }

@@ -32,6 +32,12 @@ struct SeriesArrays {
         kOpening,      ///< w of the next link less w of the link
         kRows
     };
+    /// A uniform acceleration and its coefficients 1 .. `changes`.
+    struct Pull {
+        Vec2 first;
+        std::size_t changes = 0;
+        std::array<Vec2, kMaxSeriesOrder + 1> term{};
+    };
     struct alignas(kSeriesLanes * sizeof(double)) Lanes {
         std::array<double, kSeriesLanes> lane{};
     };
@@ -42,9 +48,9 @@ struct SeriesArrays {
     std::size_t meeting = 0;  ///< link at which the eliminations from both ends meet; the first of a block
     double drag_1_s = 0.0;
     double first_inverse_mass_1_kg = 0.0;  ///< of the particle at the chain's start
-    Vec2 start_pull_m_s2;                  ///< the uniform acceleration if the start is pinned, else 0
-    Vec2 end_pull_m_s2;                    ///< the same if the end is pinned
-    Vec2 fall_m_s2;                        ///< the same if the start is not pinned
+    Pull start_pull_m_s2;                  ///< the uniform acceleration if the start is pinned, else 0
+    Pull end_pull_m_s2;                    ///< the same if the end is pinned
+    Pull fall_m_s2;                        ///< the same if the start is not pinned
     double unit_s = 1.0;                   ///< unit of time: coefficient k belongs to (t / unit_s)^k
 
     // Directions of the first and the last link; velocity and place of the centre of mass of a free chain.
@@ -95,9 +101,9 @@ class ChainSeries {
     ChainSeries& operator=(ChainSeries&&) = delete;
     ~ChainSeries() = default;
 
-    /// Expands the motion that starts from the chain's part of the state `y`. `unit_s` (> 0): about the time
-    /// for which the series is needed, so that no coefficient overflows.
-    void expand(const double* y, double unit_s);
+    /// Expands the motion that starts at `time_s` from the chain's part of the state `y`. `unit_s` (> 0):
+    /// about the time for which the series is needed, so that no coefficient overflows.
+    void expand(const double* y, double unit_s, double time_s = 0.0);
 
     /// The time after which the last terms exceed `tolerance` of the angular velocity and the inverse of the
     /// chain's time scale together; infinite if the terms are zero, 0 if a coefficient is not finite.
@@ -113,10 +119,12 @@ class ChainSeries {
     [[nodiscard]] double sum(const Series& series, double t) const;
 
     const Code* code_;
+    const Forces* forces_;
     std::size_t first_link_;
     std::size_t link_stride_;  ///< number of links of all chains: distance of c, s and w in a state
     std::size_t first_extra_;
     bool starts_pinned_;
+    bool ends_pinned_;
     double inverse_timescale_1_s_;
     double length_m_;
     SeriesArrays arrays_;

@@ -40,6 +40,13 @@ template <std::size_t Count>
 struct Row {
     std::array<Slot, Count> slots;
     std::array<double, Count> weights;
+
+    /// Their sum: the time of a stage, in parts of the step.
+    [[nodiscard]] constexpr double time() const {
+        double sum = 0.0;
+        for (const double weight : weights) sum += weight;
+        return sum;
+    }
 };
 
 // The argument of stage n is y + h times row n.
@@ -228,8 +235,9 @@ Status Dop853::advance_to(double time_s) {
 }
 
 template <std::size_t Count>
-void Dop853::evaluate(const dop853::Row<Count>& row, double step_s, const std::vector<double>& from,
-                      std::vector<double>& scratch, std::size_t slot) {
+void Dop853::evaluate(const dop853::Row<Count>& row, double start_s, double step_s,
+                      const std::vector<double>& from, std::vector<double>& scratch, std::size_t slot) {
+    ode_.set_time(start_s + row.time() * step_s);
     add(terms(row, step_s, slope_), from.size(), from.data(), scratch.data());
     ode_.derivative(scratch.data(), slope_[slot].data());
 }
@@ -237,9 +245,13 @@ void Dop853::evaluate(const dop853::Row<Count>& row, double step_s, const std::v
 Status Dop853::step() {
     std::swap(slope_[dop853::k1], slope_[dop853::k13]);
     double largest_growth = kMaxGrowth;
+    const double key_s = ode_.next_key_s(time_s_);
     while (accepted_ + rejected_ < StepControl::kMaxSteps) {
         // Time and step agree to the last bit, so that no rounding of times adds up.
-        const double end_s = time_s_ + next_step_s_;
+        double end_s = time_s_ + next_step_s_;
+        // Two steps up to a key are of one length, so that none is very short.
+        if (2.0 * next_step_s_ > key_s - time_s_)
+            end_s = next_step_s_ < key_s - time_s_ ? time_s_ + 0.5 * (key_s - time_s_) : key_s;
         const double step_s = end_s - time_s_;
         if (!(step_s > control_.smallest_s)) return Status::kDiverged;
         count_work(1 + y_.size());
@@ -262,17 +274,17 @@ Status Dop853::step() {
 
 void Dop853::evaluate_stages(double step_s) {
     using namespace dop853;
-    evaluate(kStageRow2, step_s, y_, stage_, k2);
-    evaluate(kStageRow3, step_s, y_, stage_, k3);
-    evaluate(kStageRow4, step_s, y_, stage_, k4);
-    evaluate(kStageRow5, step_s, y_, stage_, k5);
-    evaluate(kStageRow6, step_s, y_, stage_, k6);
-    evaluate(kStageRow7, step_s, y_, stage_, k7);
-    evaluate(kStageRow8, step_s, y_, stage_, k8);
-    evaluate(kStageRow9, step_s, y_, stage_, k9);
-    evaluate(kStageRow10, step_s, y_, stage_, k10);
-    evaluate(kStageRow11, step_s, y_, stage_, k11);
-    evaluate(kStageRow12, step_s, y_, stage_, k12);
+    evaluate(kStageRow2, time_s_, step_s, y_, stage_, k2);
+    evaluate(kStageRow3, time_s_, step_s, y_, stage_, k3);
+    evaluate(kStageRow4, time_s_, step_s, y_, stage_, k4);
+    evaluate(kStageRow5, time_s_, step_s, y_, stage_, k5);
+    evaluate(kStageRow6, time_s_, step_s, y_, stage_, k6);
+    evaluate(kStageRow7, time_s_, step_s, y_, stage_, k7);
+    evaluate(kStageRow8, time_s_, step_s, y_, stage_, k8);
+    evaluate(kStageRow9, time_s_, step_s, y_, stage_, k9);
+    evaluate(kStageRow10, time_s_, step_s, y_, stage_, k10);
+    evaluate(kStageRow11, time_s_, step_s, y_, stage_, k11);
+    evaluate(kStageRow12, time_s_, step_s, y_, stage_, k12);
     add(terms(kResult, step_s, slope_), y_.size(), y_.data(), stage_.data());
 }
 
@@ -313,6 +325,7 @@ void Dop853::accept(double end_s) {
     ode_.project(stage_.data());
     std::swap(old_y_, y_);
     std::swap(y_, stage_);
+    ode_.set_time(end_s);
     ode_.derivative(y_.data(), slope_[dop853::k13].data());
     old_time_s_ = time_s_;
     time_s_ = end_s;
@@ -323,9 +336,9 @@ void Dop853::accept(double end_s) {
 void Dop853::prepare_interpolation() {
     using namespace dop853;
     const double step_s = time_s_ - old_time_s_;
-    evaluate(kStageRow14, step_s, old_y_, stage_, k14);
-    evaluate(kStageRow15, step_s, old_y_, stage_, k15);
-    evaluate(kStageRow16, step_s, old_y_, stage_, k16);
+    evaluate(kStageRow14, old_time_s_, step_s, old_y_, stage_, k14);
+    evaluate(kStageRow15, old_time_s_, step_s, old_y_, stage_, k15);
+    evaluate(kStageRow16, old_time_s_, step_s, old_y_, stage_, k16);
     can_interpolate_ = true;
 }
 

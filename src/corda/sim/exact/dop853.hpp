@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "corda/sim/solver.hpp"
@@ -15,12 +16,22 @@ template <std::size_t Count>
 struct Row;
 }
 
-/// An autonomous system of ordinary differential equations, y' = f(y), for Dop853.
+/// A system of ordinary differential equations, y' = f(t, y), for Dop853.
 class Ode : NonCopyable {
   public:
     virtual ~Ode() = default;
 
-    /// Writes f(y) to `slope`. Both have one entry per component and do not overlap.
+    /// Sets the time t of what follows; at first it is 0.
+    virtual void set_time(double time_s) { static_cast<void>(time_s); }
+
+    /// The first time after `time_s` at which a derivative of f jumps, so that a step must end there;
+    /// infinite if there is none.
+    [[nodiscard]] virtual double next_key_s(double time_s) const {
+        static_cast<void>(time_s);
+        return std::numeric_limits<double>::infinity();
+    }
+
+    /// Writes f(t, y) to `slope`. Both have one entry per component and do not overlap.
     virtual void derivative(const double* y, double* slope) = 0;
 
     /// Projects a state that an integrator arrived at onto the invariants that the exact solution keeps (unit
@@ -102,10 +113,10 @@ class Dop853 {
     /// Largest error of a component in the step from y_ to stage_, in parts of the tolerance; infinite if one
     /// is not finite.
     [[nodiscard]] double error(double step_s) const;
-    /// slope_[slot] = f(from + step sum of weights * slopes).
+    /// slope_[slot] = f(start_s + step sum of weights, from + step sum of weights * slopes).
     template <std::size_t Count>
-    void evaluate(const dop853::Row<Count>& row, double step_s, const std::vector<double>& from,
-                  std::vector<double>& scratch, std::size_t slot);
+    void evaluate(const dop853::Row<Count>& row, double start_s, double step_s,
+                  const std::vector<double>& from, std::vector<double>& scratch, std::size_t slot);
 
     Ode& ode_;
     std::vector<ErrorScale> scales_;

@@ -31,6 +31,8 @@ ElasticDynamics::ElasticDynamics(const System& system, const Forces& forces)
       origin_m_{system.x_m.front(), system.y_m.front()},
       forces_(forces),
       elastic_(system, 0, count_),
+      moving_(moving_pins(system)),
+      moved_m_(moving_.size()),
       size_m_(size_of(system)) {
     assert(system.bodies.size() == 1 && system.bodies.front().material.compliance_1_n > 0.0);
     initial_state_.resize(4 * count_);
@@ -41,6 +43,7 @@ ElasticDynamics::ElasticDynamics(const System& system, const Forces& forces)
         if (system.is_pinned(i)) pins_.push_back({i, {system.x_m[i], system.y_m[i]}});
         initial_state_[i] = system.x_m[i] - origin_m_.x;
         initial_state_[count_ + i] = system.y_m[i] - origin_m_.y;
+        if (system.is_pinned(i)) continue;
         initial_state_[2 * count_ + i] = system.vx_m_s[i];
         initial_state_[3 * count_ + i] = system.vy_m_s[i];
     }
@@ -73,6 +76,26 @@ double ElasticDynamics::inverse_stable_step_1_s() const {
     return frequency_1_s_ / kStableOmegaH;
 }
 
+void ElasticDynamics::set_time(double time_s) {
+    forces_.set_time(time_s);
+    time_s_ = time_s;
+    for (std::size_t k = 0; k < moving_.size(); ++k) moved_m_[k] = moving_[k].displacement(time_s);
+}
+
+double ElasticDynamics::next_key_s(double time_s) const {
+    return std::min(forces_.next_key_s(time_s), sim::next_key_s(moving_, time_s));
+}
+
+const double* ElasticDynamics::with_pins(const double* y) const {
+    if (moving_.empty()) return y;
+    place_m_.assign(y, y + 2 * count_);
+    for (std::size_t k = 0; k < moving_.size(); ++k) {
+        place_m_[moving_[k].particle] += moved_m_[k].x;
+        place_m_[count_ + moving_[k].particle] += moved_m_[k].y;
+    }
+    return place_m_.data();
+}
+
 void ElasticDynamics::derivative(const double* y, double* slope) {
     double* __restrict const slope_vx = slope + 2 * count_;
     double* __restrict const slope_vy = slope + 3 * count_;
@@ -80,7 +103,8 @@ void ElasticDynamics::derivative(const double* y, double* slope) {
     const double* const vy = y + 3 * count_;
     std::copy_n(vx, 2 * count_, slope);
     std::fill_n(slope_vx, 2 * count_, 0.0);
-    elastic_.add_forces({y, y + count_}, {slope_vx, slope_vy});
+    const double* const at = with_pins(y);
+    elastic_.add_forces({at, at + count_}, {slope_vx, slope_vy});
     const double* const weight = inverse_mass_1_kg_.data();
     const double* const falls = falls_.data();
     const Vec2 uniform_m_s2 = forces_.uniform_m_s2();
@@ -100,10 +124,15 @@ void ElasticDynamics::positions(const double* y, State& state) const {
         state.x_m[pin.particle] = pin.position_m.x;
         state.y_m[pin.particle] = pin.position_m.y;
     }
+    for (std::size_t k = 0; k < moving_.size(); ++k) {
+        state.x_m[moving_[k].particle] += moved_m_[k].x;
+        state.y_m[moving_[k].particle] += moved_m_[k].y;
+    }
 }
 
 double ElasticDynamics::energy_j(const double* y) const {
-    double energy_j = energy_offset_j_ + elastic_.energy_j(y, y + count_);
+    const double* const at = with_pins(y);
+    double energy_j = energy_offset_j_ + elastic_.energy_j(at, at + count_);
     for (std::size_t i = 0; i < count_; ++i) {
         const double vx = y[2 * count_ + i];
         const double vy = y[3 * count_ + i];
@@ -115,6 +144,11 @@ double ElasticDynamics::energy_j(const double* y) const {
 void ElasticDynamics::velocities(const double* y, State& state) const {
     std::copy_n(y + 2 * count_, count_, state.vx_m_s.begin());
     std::copy_n(y + 3 * count_, count_, state.vy_m_s.begin());
+    for (const MovingPin& pin : moving_) {
+        const Vec2 velocity_m_s = pin.velocity(time_s_);
+        state.vx_m_s[pin.particle] = velocity_m_s.x;
+        state.vy_m_s[pin.particle] = velocity_m_s.y;
+    }
 }
 
 }  // namespace corda::sim

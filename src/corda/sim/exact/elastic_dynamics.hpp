@@ -5,6 +5,7 @@
 
 #include "corda/sim/exact/dop853.hpp"
 #include "corda/sim/forces/elastic_forces.hpp"
+#include "corda/sim/moving_pins.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::sim {
@@ -13,7 +14,7 @@ namespace corda::sim {
 /// Cartesian coordinates (section 3.5 of src/corda/sim/README.md).
 ///
 /// A state has one array each of x, y, vx and vy over all particles of the body, relative to the initial
-/// position of the first one; those of pinned particles never change.
+/// position of the first one; those of pinned particles never change, even if they move.
 ///
 /// The force of a string has a kink where it comes taut. Steps shrink there until their estimated errors meet
 /// the tolerance, but the estimate for a step with a kink is less reliable.
@@ -32,13 +33,16 @@ class ElasticDynamics final : public Dynamics {
     /// Large enough that no step lets the fastest vibration grow.
     [[nodiscard]] double inverse_stable_step_1_s() const override;
 
+    void set_time(double time_s) override;
+    [[nodiscard]] double next_key_s(double time_s) const override;
     void derivative(const double* y, double* slope) override;
 
     void positions(const double* y, State& state) const override;
     [[nodiscard]] double energy_j(const double* y) const override;
     void velocities(const double* y, State& state) const override;
     void tensions(const double* y, std::vector<double>& tension_n) override {
-        elastic_.tensions(y, y + count_, tension_n);
+        const double* const at = with_pins(y);
+        elastic_.tensions(at, at + count_, tension_n);
     }
 
   private:
@@ -47,6 +51,8 @@ class ElasticDynamics final : public Dynamics {
         Vec2 position_m;  ///< relative to the system's origin, to the last bit
     };
     void measure();
+    /// The positions, with pins where they are at the time set.
+    [[nodiscard]] const double* with_pins(const double* y) const;
 
     std::size_t count_;
     Vec2 origin_m_;  ///< of a state, relative to the system's origin
@@ -56,6 +62,10 @@ class ElasticDynamics final : public Dynamics {
     std::vector<double> inverse_mass_1_kg_;
     std::vector<double> falls_;  ///< 1, or 0 if pinned
     std::vector<Pin> pins_;
+    std::vector<MovingPin> moving_;
+    std::vector<Vec2> moved_m_;  ///< one per moving_, at time_s_
+    double time_s_ = 0.0;
+    mutable std::vector<double> place_m_;  ///< scratch of with_pins()
     std::vector<double> initial_state_;
     double size_m_ = 0.0;
     double inverse_timescale_1_s_ = 0.0;  ///< see Forces::inverse_timescale_1_s; of its size

@@ -105,6 +105,7 @@ OdePart::OdePart(const System& system, const Forces& forces, std::unique_ptr<Dyn
 Status OdePart::reach(double time_s, State& state) {
     if (integrator_.advance_to(time_s) == Status::kDiverged) return Status::kDiverged;
     integrator_.interpolate(time_s, output_.data());
+    dynamics_->set_time(time_s);
     dynamics_->project(output_.data());
     dynamics_->positions(output_.data(), state);
     return Status::kOk;

@@ -53,7 +53,7 @@ class Exact : public Solver {
     Exact(const System& system, const Forces& forces, const ExactDef& def, std::vector<double> output = {});
     /// The equations of motion at the last requested time.
     [[nodiscard]] virtual Dynamics& dynamics() const = 0;
-    /// Writes the positions at a time, and the state of dynamics() to output_.
+    /// Writes the positions at a time, sets that of dynamics(), and writes its state to output_.
     virtual Status reach(double time_s, State& state) = 0;
 
     std::vector<double> output_;  ///< state of dynamics() at the last requested time

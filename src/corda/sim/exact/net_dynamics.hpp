@@ -81,6 +81,8 @@ class NetDynamics final : public Dynamics {
     /// As those of ChainDynamics.
     [[nodiscard]] std::vector<ErrorScale> error_scales() const override;
     [[nodiscard]] double inverse_timescale_1_s() const override { return net_.inverse_timescale_1_s; }
+    void set_time(double time_s) override { net_.forces.set_time(time_s); }
+    [[nodiscard]] double next_key_s(double time_s) const override { return net_.forces.next_key_s(time_s); }
     void derivative(const double* y, double* slope) override;
     /// Makes directions unit vectors.
     void project(double* y) override;

@@ -130,7 +130,7 @@ RadauChain make_radau_chain(ChainDynamics& dynamics, const System& system, const
     r.first_link = chain.first_link;
     r.link_stride = chains.link_count();
     r.ends_pinned = chain.ends_pinned;
-    r.pull_m_s2 = chains.forces.uniform_m_s2();
+    r.pull_m_s2.fill(chains.forces.uniform_m_s2());
     r.drag_1_s = chains.forces.drag_1_s();
     r.control = step_control(chain.inverse_timescale_1_s, tolerance);
     r.tolerance_m = std::max(kShareOfAnImplicitStep * tolerance, kMinShareOfAnImplicitStep) * chain.length_m;
@@ -190,9 +190,9 @@ void predict(RadauChain& r) {
 
 /// The pull that a pin withholds from link `i` at a stage: that at the end enters the other way round.
 Pull pull_of_pin(const RadauChain& r, Index i, Index stage) {
-    if (i == 1) return pull_of(r.pull_m_s2, r.c[1], r.s[1], r.turn[stage][1]);
+    if (i == 1) return pull_of(r.pull_m_s2[stage], r.c[1], r.s[1], r.turn[stage][1]);
     if (i < r.links || !r.ends_pinned) return {};
-    return pull_of(-1.0 * r.pull_m_s2, r.c[i], r.s[i], r.turn[stage][i]);
+    return pull_of(-1.0 * r.pull_m_s2[stage], r.c[i], r.s[i], r.turn[stage][i]);
 }
 
 void find_residuals(RadauChain& r) {
@@ -383,8 +383,7 @@ void accept(RadauChain& r, const Chains& chains, const Chain& chain, double* y) 
     measure_joints(r);
     std::swap(r.old_turn, r.turn);
     std::swap(r.old_tension, r.tension);
-    r.start_s = r.end_s;
-    r.end_s += r.step_s;
+    r.start_s = std::exchange(r.end_s, r.end_s + r.step_s);
     r.last_step_s = r.step_s;
     ++r.steps;
 }
@@ -415,9 +414,12 @@ double next_factor(RadauChain& r) {
 Status step(RadauChain& r, const Chains& chains, const Chain& chain, double* y) {
     double most = std::numeric_limits<double>::infinity();  // no growth after a rejected step
     for (;;) {
+        r.step_s = std::min(r.step_s, chains.forces.next_key_s(r.end_s) - r.end_s);
         if (!(r.step_s > r.control.smallest_s) || r.steps == StepControl::kMaxSteps) return Status::kDiverged;
         // Time and step agree to the last bit, so that no rounding of times adds up.
         r.step_s = (r.end_s + r.step_s) - r.end_s;
+        for (Index k = 0; k < RadauChain::kStages && chains.forces.depend_on_time(); ++k)
+            r.pull_m_s2[k] = chains.forces.uniform_at(r.end_s + kTime[k] * r.step_s);
         const double factor = next_factor(r);
         if (factor > 0.0) {
             accept(r, chains, chain, y);
@@ -479,6 +481,7 @@ Status ImplicitPart::reach(double time_s, State& state) {
         interpolate(chain, time_s, output_.data());
         if (chain.ends_pinned) close_between_pins(chains, chains.list[i], output_.data());
     }
+    dynamics_.set_time(time_s);
     dynamics_.positions(output_.data(), state);
     return Status::kOk;
 }

@@ -30,7 +30,7 @@ struct RadauChain {
     std::size_t first_link = 0;
     std::size_t link_stride = 0;
     bool ends_pinned = false;
-    Vec2 pull_m_s2 = {};
+    std::array<Vec2, kStages> pull_m_s2 = {};  ///< the uniform acceleration at the stages
     double drag_1_s = 0.0;
     StepControl control = {};
     double tolerance_m = 0.0;  ///< of a step

@@ -1,11 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 #include "corda/sim/chain_tensions.hpp"
+#include "corda/sim/cosine_sine.hpp"
 #include "corda/sim/exact/chain_series.hpp"
-
-#define CORDA_INLINE [[gnu::always_inline]] inline
 
 namespace corda::sim {
 
@@ -40,38 +40,6 @@ CORDA_INLINE void shift_up(const Four& before, const Four& here, Four& result) {
 /// The last three of `here` and the first of `after`.
 CORDA_INLINE void shift_down(const Four& here, const Four& after, Four& result) {
     result = __builtin_shufflevector(here, after, 1, 2, 3, 4);
-}
-
-/// For angles below this, cosine_sine() uses the polynomials alone.
-inline constexpr double kSmallAngle = 0.78;
-
-/// Of one or four angles.
-template <class X>
-struct CosineSine {
-    X cosine;
-    X sine;
-};
-
-/// Cosine and sine of one or four angles below kSmallAngle, with the bits of cosine_sine().
-template <class X>
-CORDA_INLINE CosineSine<X> cosine_sine_of_small(const X& x) {
-    const X z = x * x;
-    const X sine =
-        x + x * z *
-                (-1.66666666666666324348e-01 +
-                 z * (8.33333333332248946124e-03 +
-                      z * (-1.98412698298579493134e-04 +
-                           z * (2.75573137070700676789e-06 +
-                                z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)))));
-    const X cosine =
-        1.0 - 0.5 * z +
-        z * z *
-            (4.16666666666666019037e-02 +
-             z * (-1.38888888888741095749e-03 +
-                  z * (2.48015872894767294178e-05 +
-                       z * (-2.75573143513906633035e-07 +
-                            z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
-    return {cosine, sine};
 }
 
 /// Cosine and sine of angles up to about 1e5, good to the last digit, from +, - and * alone. Source: the
@@ -272,13 +240,31 @@ CORDA_INLINE void in_last_lane(const SeriesArrays& a, double x, Four& result) {
     result = kLane == is_last ? Four{} + x : Four{};
 }
 
+/// Coefficient k of a pull along a link's direction.
+CORDA_INLINE double pull_along(const SeriesArrays::Pull& pull, const Series& c, const Series& s,
+                               std::size_t k) {
+    double sum = pull.first.x * c[k] + pull.first.y * s[k];
+    for (std::size_t j = 1; j <= std::min(k, pull.changes); ++j)
+        sum += pull.term[j].x * c[k - j] + pull.term[j].y * s[k - j];
+    return sum;
+}
+
+/// The same to its left.
+CORDA_INLINE double pull_across(const SeriesArrays::Pull& pull, const Series& c, const Series& s,
+                                std::size_t k) {
+    double sum = pull.first.y * c[k] - pull.first.x * s[k];
+    for (std::size_t j = 1; j <= std::min(k, pull.changes); ++j)
+        sum += pull.term[j].y * c[k - j] - pull.term[j].x * s[k - j];
+    return sum;
+}
+
 /// Eliminates coefficient k of all loads from both ends. Returns the load that is left for the meeting.
 CORDA_INLINE double eliminate(SeriesArrays& a, std::size_t k) {
     const std::size_t half = a.meeting / kLanes;
     double down = 0.0;
     double up = 0.0;
     Four lower_next{};  // load_next of the block below that of eliminate_up, or a pin's pull
-    lower_next[kLanes - 1] = a.start_pull_m_s2.x * a.first_c[k] + a.start_pull_m_s2.y * a.first_s[k];
+    lower_next[kLanes - 1] = pull_along(a.start_pull_m_s2, a.first_c, a.first_s, k);
     Known upper;
     for (std::size_t d = 0; d < a.blocks - half; ++d) {
         const std::size_t high = a.blocks - 1 - d;
@@ -286,7 +272,7 @@ CORDA_INLINE double eliminate(SeriesArrays& a, std::size_t k) {
         find_known(a, high, k, known);
         if (d == 0) {
             Four end_pull;
-            in_last_lane(a, a.end_pull_m_s2.x * a.last_c[k] + a.end_pull_m_s2.y * a.last_s[k], end_pull);
+            in_last_lane(a, pull_along(a.end_pull_m_s2, a.last_c, a.last_s, k), end_pull);
             known.load -= end_pull;
         } else {
             upper.complete(known.load_next);
@@ -355,12 +341,9 @@ CORDA_INLINE void substitute(SeriesArrays& a, std::size_t k, double share, doubl
 CORDA_INLINE void turn_links(SeriesArrays& a, std::size_t k, double share) {
     const std::size_t last = a.links - 1;
     Four first_pull{};
-    first_pull[0] = share * a.inverse_length_1_m[0] *
-                    (a.start_pull_m_s2.y * a.first_c[k] - a.start_pull_m_s2.x * a.first_s[k]);
+    first_pull[0] = share * a.inverse_length_1_m[0] * pull_across(a.start_pull_m_s2, a.first_c, a.first_s, k);
     Four last_pull;
-    in_last_lane(a,
-                 share * a.inverse_length_1_m[last] *
-                     (a.end_pull_m_s2.y * a.last_c[k] - a.end_pull_m_s2.x * a.last_s[k]),
+    in_last_lane(a, share * a.inverse_length_1_m[last] * pull_across(a.end_pull_m_s2, a.last_c, a.last_s, k),
                  last_pull);
     Four across_before{};  // across_next of the block before
     Four omega_before{};
@@ -409,7 +392,7 @@ CORDA_INLINE void turn_direction(SeriesArrays& a, std::size_t link, std::size_t 
 
 /// Coefficient k + 1 of the velocity and place of a free chain's centre of mass.
 CORDA_INLINE void move_center(SeriesArrays& a, std::size_t k, double share) {
-    const Vec2 fall = k == 0 ? a.fall_m_s2 : Vec2{};
+    const Vec2 fall = k == 0 ? a.fall_m_s2.first : k <= a.fall_m_s2.changes ? a.fall_m_s2.term[k] : Vec2{};
     a.vx[k + 1] = share * (fall.x - a.drag_1_s * a.vx[k]);
     a.vy[k + 1] = share * (fall.y - a.drag_1_s * a.vy[k]);
     a.x[k + 1] = share * a.vx[k];

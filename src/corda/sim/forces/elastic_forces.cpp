@@ -179,10 +179,8 @@ void ElasticForces::tensions(const double* x_m, const double* y_m, std::vector<d
     }
 }
 
-EnergyMeter::EnergyMeter(const System& system, const WorldDef& world, std::span<const MethodDef> methods)
-    : system_(&system),
-      weight_n_(Forces(world).on_particles(system)),
-      elastic_(system, 0, system.particle_count()) {
+EnergyMeter::EnergyMeter(const System& system, const Forces& forces, std::span<const MethodDef> methods)
+    : system_(&system), weight_n_(forces.on_particles(system)), elastic_(system, 0, system.particle_count()) {
     for (std::size_t b = 0; b < system.bodies.size(); ++b) {
         const auto* relaxation = std::get_if<RelaxationDef>(&methods[methods.size() == 1 ? 0 : b]);
         if (relaxation == nullptr || !relaxation->force_n) continue;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "corda/sim/forces/forces.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/sim/system.hpp"
 
@@ -82,7 +83,7 @@ class ElasticForces {
 class EnergyMeter {
   public:
     /// `methods`: one per body of the system, or one for all. The system must outlive it.
-    EnergyMeter(const System& system, const WorldDef& world, std::span<const MethodDef> methods);
+    EnergyMeter(const System& system, const Forces& forces, std::span<const MethodDef> methods);
 
     /// The energy of a state that has velocities.
     [[nodiscard]] Energy of(const State& state) const;

@@ -78,6 +78,10 @@ void kick(const RigidBars& bars, const Stage& stage, Motion& motion) {
         add_unrounded(vy[i], lost_y[i], slowdown * vy[i] + stage.push_m_s.y);
     }
     for (const std::uint32_t i : bars.held) vx[i] = vy[i] = lost_x[i] = lost_y[i] = 0.0;
+    for (std::size_t k = 0; k < stage.held_m_s.size(); ++k) {
+        vx[bars.held[k]] = stage.held_m_s[k].x;
+        vy[bars.held[k]] = stage.held_m_s[k].y;
+    }
 }
 
 void drift(double span_s, Motion& motion) {

@@ -11,7 +11,7 @@
 
 namespace corda::sim {
 
-/// Positions and velocities, one entry per particle. A pinned particle's velocity is 0.
+/// Positions and velocities, one entry per particle.
 ///
 /// Each number is an unrounded sum: a double, and the small part that rounding has removed from it (Kahan's
 /// summation). A million short steps then lose no more than one. Without the lost parts, order 8 drifts
@@ -71,7 +71,8 @@ struct RigidBars {
 struct Stage {
     double span_s = 0.0;  ///< not 0; negative if a composition goes backwards
     double decay = 1.0;
-    Vec2 push_m_s;  ///< of every free particle
+    Vec2 push_m_s;                        ///< of every free particle
+    std::span<const Vec2> held_m_s = {};  ///< velocities of RigidBars::held; none: 0
     /// Newton's method gives up if a bar turns by more than about 60 degrees in a stage: beyond that its
     /// linear equations are poor, and beyond 90 degrees another solution is nearer.
     static constexpr double kMinTurnCosine = 0.5;

@@ -92,6 +92,12 @@ RattleModel prepare_rattle(const System& system, const Forces& forces, const Rat
                       .constraints = make_constraint_solver(system),
                       .forces = forces,
                       .elastic = {system, 0, system.particle_count()}};
+    model.pins = moving_pins(system);
+    const std::vector<std::uint32_t>& held = model.constraints->bars().held;
+    if (!model.pins.empty()) model.held_m_s.resize(held.size());
+    if (!model.pins.empty() && std::ssize(held) != std::ranges::count(system.inverse_mass_1_kg, 0.0))
+        throw Refusal(Refusal::Reason::kUnlikeMoves,
+                      "a straight row of bars joins pins that move differently");
     model.impulse.assign(model.constraints->links().size(), 0.0);
     model.history.assign(RattleModel::kHistory * model.composition.stages.size() * model.impulse.size(), 0.0);
     if (model.elastic.empty()) return model;
@@ -110,6 +116,33 @@ double find_forces(RattleModel& model, const Motion& motion) {
                                     {model.force_x_n.data(), model.force_y_n.data()});
 }
 
+void set_time(RattleModel& model, double time_s) {
+    model.time_s = time_s;
+    model.forces.set_time(time_s);
+}
+
+/// Gives pins their mean velocities over a stage from the time set.
+void move_pins(RattleModel& model, Stage& stage) {
+    if (model.pins.empty()) return;
+    const std::vector<std::uint32_t>& held = model.constraints->bars().held;
+    for (const MovingPin& pin : model.pins) {
+        const auto at = static_cast<std::size_t>(std::ranges::lower_bound(held, pin.particle) - held.begin());
+        model.held_m_s[at] = (1.0 / stage.span_s) *
+                             (pin.displacement(model.time_s + stage.span_s) - pin.displacement(model.time_s));
+    }
+    stage.held_m_s = model.held_m_s;
+}
+
+/// Brings pins to their places, from which rounding has moved them.
+void place_pins(const RattleModel& model, double time_s, Motion& motion) {
+    for (const MovingPin& pin : model.pins) {
+        const Vec2 place_m = pin.place_m(time_s);
+        motion.x_m[pin.particle] = place_m.x;
+        motion.y_m[pin.particle] = place_m.y;
+        motion.x_lost_m[pin.particle] = motion.y_lost_m[pin.particle] = 0.0;
+    }
+}
+
 /// Writes a trajectory's state with complete velocities to `output`, and the elastic forces there to the
 /// model. False if the bars do not determine them.
 bool complete(RattleModel& model, const Trajectory& trajectory, Motion& output) {
@@ -117,6 +150,7 @@ bool complete(RattleModel& model, const Trajectory& trajectory, Motion& output) 
     const std::span<const Link> links = model.constraints->links();
     // The second half of the last stage's kick.
     output = trajectory.motion;
+    set_time(model, trajectory.time_s);
     const double half_s = 0.5 * trajectory.last_span_s;
     const double decay = model.forces.decay(half_s);
     if (!model.elastic.empty()) {
@@ -131,6 +165,11 @@ bool complete(RattleModel& model, const Trajectory& trajectory, Motion& output) 
         const bool is_held = inverse_mass[i] == 0.0;
         output.vx_m_s[i] = is_held ? 0.0 : decay * (output.vx_m_s[i] + push_m_s.x);
         output.vy_m_s[i] = is_held ? 0.0 : decay * (output.vy_m_s[i] + push_m_s.y);
+    }
+    for (const MovingPin& pin : model.pins) {
+        const Vec2 velocity_m_s = pin.velocity(model.time_s);
+        output.vx_m_s[pin.particle] = velocity_m_s.x;
+        output.vy_m_s[pin.particle] = velocity_m_s.y;
     }
     // The impulses q that leave no bar a change of its length.
     for (std::size_t k = 0; k < links.size(); ++k)
@@ -152,6 +191,15 @@ bool complete(RattleModel& model, const Trajectory& trajectory, Motion& output) 
 bool find_multipliers(const RattleModel& model, const Motion& motion, std::vector<double>& multiplier) {
     const RigidBars& bars = model.constraints->bars();
     multiplier = loads(bars, motion, model.forces.uniform_m_s2());
+    for (const MovingPin& pin : model.pins) {  // drag slows the free ends of its bars alone
+        const Vec2 own =
+            pin.acceleration(model.time_s) + model.forces.drag_1_s() * pin.velocity(model.time_s);
+        for (std::size_t k = 0; k < bars.links.size(); ++k) {
+            const double load = dot(along(bars.links[k], motion), own);
+            if (bars.links[k].a == pin.particle) multiplier[k] -= load;
+            if (bars.links[k].b == pin.particle) multiplier[k] += load;
+        }
+    }
     if (!model.elastic.empty()) {
         for (std::size_t k = 0; k < bars.links.size(); ++k) {
             const auto [a, b, rest_m] = bars.links[k];
@@ -218,11 +266,15 @@ bool take_part(RattleModel& model, double part_s, bool is_grid, Trajectory& traj
         const double decay = model.forces.decay(0.5 * (trajectory.last_span_s + span_s));
         const double kick_s = 0.5 * (decay * trajectory.last_span_s + span_s);
         guess(model, i, kick_s, known, trajectory);
+        set_time(model, trajectory.time_s);
         Stage stage{span_s, decay, kick_s * model.forces.uniform_m_s2()};
         const double elastic_square = find_forces(model, trajectory.motion);
         if (!model.elastic.empty()) stage = push(model, kick_s, stage, trajectory.motion);
+        move_pins(model, stage);
         if (!model.constraints->move(stage, trajectory.motion, model.impulse)) return false;
         trajectory.last_span_s = span_s;
+        trajectory.time_s += span_s;
+        place_pins(model, trajectory.time_s, trajectory.motion);
         // What the impulses tell of the tensions, and these of the frequencies.
         if (std::abs(kick_s) < kShortKick * std::abs(span_s)) continue;
         std::vector<double>& multiplier = trajectory.multiplier;
@@ -243,7 +295,7 @@ bool take_part(RattleModel& model, double part_s, bool is_grid, Trajectory& traj
 /// Completes a step whose parts fail.
 bool leap(RattleModel& model, double span_s, Trajectory& trajectory) {
     Motion motion;
-    if (!complete(model, trajectory, motion)) return false;
+    if (!model.pins.empty() || !complete(model, trajectory, motion)) return false;
     const std::vector<double>& inverse_mass = model.constraints->bars().inverse_mass_1_kg;
     const double decay = model.forces.decay(span_s);
     for (std::size_t i = 0; i < inverse_mass.size(); ++i) {
@@ -260,6 +312,8 @@ bool leap(RattleModel& model, double span_s, Trajectory& trajectory) {
     if (find_multipliers(model, motion, multiplier)) trajectory.multiplier = std::move(multiplier);
     trajectory.motion = std::move(motion);
     trajectory.last_span_s = 0.0;
+    trajectory.time_s += span_s;
+    set_time(model, trajectory.time_s);
     trajectory.level = 0;
     trajectory.has_leapt = true;
     trajectory.frequency_1_s =
@@ -299,6 +353,21 @@ bool advance(RattleModel& model, double span_s, bool is_grid, Trajectory& trajec
     return true;
 }
 
+/// Advances by `span_s` and ends steps at the keys of paths.
+bool advance_by_keys(RattleModel& model, double span_s, bool is_grid, Trajectory& trajectory) {
+    const double near_s = 1e-9 * span_s;  // a key nearer to an end counts as there
+    const double end_s = trajectory.time_s + span_s;
+    for (double rest_s = span_s;; rest_s = end_s - trajectory.time_s) {
+        const double key_s = std::min(model.forces.next_key_s(trajectory.time_s + near_s),
+                                      next_key_s(model.pins, trajectory.time_s + near_s));
+        if (!(key_s < end_s - near_s)) return advance(model, rest_s, is_grid, trajectory);
+        is_grid = false;
+        model.known = 0;
+        if (!advance(model, key_s - trajectory.time_s, is_grid, trajectory)) return false;
+        trajectory.time_s = key_s;
+    }
+}
+
 }  // namespace
 
 const Composition& composition(int order) {
@@ -327,7 +396,8 @@ Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def,
         const double expected_square = constraints.expected_square_frequency(
                                            system, kLoadFactor * forces.strength_m_s2(), grid_.multiplier) +
                                        std::max(elastic_square, model_.elastic.common_square_frequency());
-        step_s_ = stable_step_s(model_, expected_square, frame_interval_s);
+        const double drive_1_s = forces.frequency_1_s();
+        step_s_ = stable_step_s(model_, std::max(expected_square, drive_1_s * drive_1_s), frame_interval_s);
     }
     assert(step_s_ > 0.0);
 }
@@ -354,7 +424,7 @@ Status Rattle::advance_to(double time_s, State& state) {
     if (!target.is_on_grid) {
         aside_ = is_near_line_ ? before_ : grid_;
         const auto from = static_cast<double>(is_near_line_ ? step_ - 1 : step_);
-        if (!advance(model_, time_s - from * step_s_, false, aside_)) return Status::kDiverged;
+        if (!advance_by_keys(model_, time_s - from * step_s_, false, aside_)) return Status::kDiverged;
     }
     const Trajectory& reached = target.is_on_grid ? grid_ : aside_;
     if (!complete(model_, reached, output_)) return Status::kDiverged;
@@ -366,11 +436,12 @@ Status Rattle::advance_to(double time_s, State& state) {
 }
 
 bool Rattle::step() {
+    grid_.time_s = static_cast<double>(step_) * step_s_;
     if (is_near_line_ && step_over_line()) return true;
     ConstraintSolver& constraints = *model_.constraints;
     const bool has_lines = constraints.distance_from_line(grid_.motion) < HUGE_VAL;
     if (has_lines) before_ = grid_;
-    if (!advance(model_, step_s_, true, grid_)) return false;
+    if (!advance_by_keys(model_, step_s_, true, grid_)) return false;
     ++step_;
     is_near_line_ = has_lines && constraints.distance_from_line(grid_.motion) < 1.0;
     return true;
@@ -380,7 +451,7 @@ bool Rattle::step_over_line() {
     constexpr double kPast = 0.5;
     is_near_line_ = false;
     const auto advances = [&](double steps) {
-        return advance(model_, steps * step_s_, false, aside_) && !aside_.has_leapt;
+        return advance_by_keys(model_, steps * step_s_, false, aside_) && !aside_.has_leapt;
     };
     const double near = model_.constraints->distance_from_line(grid_.motion);
     aside_ = before_;

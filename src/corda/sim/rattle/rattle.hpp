@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "corda/sim/forces/elastic_forces.hpp"
+#include "corda/sim/moving_pins.hpp"
 #include "corda/sim/rattle/constraint_solver.hpp"
 #include "corda/sim/solver.hpp"
 
@@ -29,6 +30,7 @@ struct Composition {
 /// A trajectory at the end of a stage, before the second half of the stage's kick.
 struct Trajectory {
     Motion motion;
+    double time_s = 0.0;
     double last_span_s = 0.0;        ///< of that stage; 0 at the start
     std::vector<double> multiplier;  ///< of every rigid bar in the last stage: impulse over kick, N / m
     int level = 0;                   ///< a step is taken in 2^level parts
@@ -54,6 +56,11 @@ struct RattleModel {
     std::vector<double> history = {};  ///< [age][stage][link]
     int known = 0;                     ///< parts in a row of the same span, up to kHistory
     int newest = 0;
+
+    // Pins that move; the mean velocities of all held particles in a stage.
+    std::vector<MovingPin> pins = {};
+    std::vector<Vec2> held_m_s = {};
+    double time_s = 0.0;  ///< of forces and of pins
 
     std::vector<double> impulse = {};  ///< scratch, one entry per link
     Trajectory part_start = {};        ///< scratch: from which a part that fails is repeated

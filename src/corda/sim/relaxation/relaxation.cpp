@@ -68,7 +68,7 @@ std::vector<RelaxationSchedule> schedule_bodies(const System& system) {
     return schedules;
 }
 
-/// The force on each particle, which a scene may give in place of gravity.
+/// The weight of each particle, or the force that a scene gives in its place.
 std::vector<Vec2> forces_on_particles(const System& system, const Forces& forces, const RelaxationDef& def) {
     std::vector<Vec2> force_n = forces.on_particles(system);
     if (!def.force_n) return force_n;
@@ -99,17 +99,25 @@ Relaxation::Relaxation(const System& system, const Forces& forces, const Relaxat
       sweeps_(static_cast<std::uint64_t>(def.sweeps)),
       kernel_(kernel),
       mass_kg_(system.mass_kg),
-      force_n_(forces_on_particles(system, forces, def)) {
+      force_n_(forces_on_particles(system, forces, def)),
+      forces_(forces),
+      pins_(moving_pins(system)) {
     assert(step_s_ > 0.0 && def.sweeps >= 1);
     def_.step_s = step_s_;
     refuse_materials(system);
     motion_.keep = (1.0 - def.delta) * forces.decay(step_s_);
     for (std::size_t i = 0; i < system.particle_count(); ++i) {
-        const Vec2 push_m = (step_s_ * step_s_ / mass_kg_[i]) * force_n_[i];
+        is_free_.push_back(!system.is_pinned(i));
         motion_.position_m.insert(motion_.position_m.end(), {system.x_m[i], system.y_m[i]});
         const std::array move_m{step_s_ * system.vx_m_s[i], step_s_ * system.vy_m_s[i]};
-        motion_.moves.push_back({move_m, {system.x_m[i], system.y_m[i]}, move_m, {push_m.x, push_m.y}});
+        motion_.moves.push_back({move_m, {system.x_m[i], system.y_m[i]}, move_m, {}});
     }
+    for (const MovingPin& pin : pins_) {
+        const Vec2 move_m = pin.displacement(step_s_);
+        RelaxationMove& move = motion_.moves[pin.particle];
+        move.move_m = move.last_move_m = {move_m.x, move_m.y};
+    }
+    set_pushes();
     if (kernel_ == RelaxationKernel::kScalar) {
         bars_ = movable_bars(system, 0, system.bars.size());
     } else {
@@ -135,7 +143,11 @@ Status Relaxation::advance_to(double time_s, State& state) {
     const GridTime at = locate(time_s, step_s_);
     const std::uint64_t target = at.is_on_grid ? at.step : at.step + 1;  // interpolation looks back
     assert(step_ <= target);
-    if (step_ < target) advance(target - step_);
+    while (step_ < target) {
+        const bool varies = forces_.depend_on_time() || !pins_.empty();
+        advance(varies ? 1 : target - step_);
+        if (varies) set_pushes();
+    }
     state.time_s = time_s;
     if (at.is_on_grid) {
         for (std::size_t i = 0; i < state.x_m.size(); ++i) {
@@ -146,6 +158,24 @@ Status Relaxation::advance_to(double time_s, State& state) {
         interpolate(at.fraction, state);
     }
     return Status::kOk;
+}
+
+void Relaxation::set_pushes() {
+    const double square_s2 = step_s_ * step_s_;
+    forces_.set_time(static_cast<double>(step_) * step_s_);
+    const Vec2 air_m_s2 = forces_.uniform_m_s2() - forces_.weight_m_s2();
+    for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
+        Vec2 push_m = (square_s2 / mass_kg_[i]) * force_n_[i];
+        if (is_free_[i] && air_m_s2 != Vec2{}) push_m = push_m + square_s2 * air_m_s2;
+        motion_.moves[i].push_m = {push_m.x, push_m.y};
+    }
+    for (const MovingPin& pin : pins_) {  // to where the pin will be
+        const Vec2 next_m = pin.place_m(static_cast<double>(step_ + 1) * step_s_);
+        RelaxationMove& move = motion_.moves[pin.particle];
+        const double* const here_m = &motion_.position_m[2 * pin.particle];
+        move.push_m = {(next_m.x - here_m[0]) - motion_.keep * move.move_m[0],
+                       (next_m.y - here_m[1]) - motion_.keep * move.move_m[1]};
+    }
 }
 
 void Relaxation::advance(std::uint64_t steps) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "corda/sim/moving_pins.hpp"
 #include "corda/sim/relaxation/kernels.hpp"
 #include "corda/sim/solver.hpp"
 
@@ -33,6 +34,8 @@ class Relaxation final : public Solver {
 
   private:
     void advance(std::uint64_t steps);
+    /// Sets the pushes of the next step.
+    void set_pushes();
     void interpolate(double fraction, State& state) const;
 
     RelaxationDef def_;  ///< with its step
@@ -44,7 +47,10 @@ class Relaxation final : public Solver {
     /// v(0) before the first one.
     RelaxationMotion motion_;
     std::vector<double> mass_kg_;
-    std::vector<Vec2> force_n_;                  ///< 0 for a pinned particle
+    std::vector<Vec2> force_n_;  ///< the weight or what replaces it; 0 for a pinned particle
+    Forces forces_;
+    std::vector<bool> is_free_;
+    std::vector<MovingPin> pins_;
     std::vector<RelaxationBar> bars_;            ///< for kScalar
     std::vector<RelaxationSchedule> schedules_;  ///< for kAvx2; of some bodies each
 };

@@ -195,7 +195,7 @@ TEST(EnergyMeter, KnowsTheForceOfRelaxation) {
     relaxation.force_n = Vec2{4.0, 0.0};
     const MethodDef method = relaxation;
     const State state{0.0, {1.0, 2.0}, {5.0, 5.0}, {0.0, 0.0}, {0.0, 0.0}, {}};
-    EXPECT_DOUBLE_EQ(EnergyMeter(system, {}, {&method, 1}).of(state).weight_j, -4.0 * (1.0 + 2.0));
+    EXPECT_DOUBLE_EQ(EnergyMeter(system, WorldDef{}, {&method, 1}).of(state).weight_j, -4.0 * (1.0 + 2.0));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "benchmark/study/reference/ropes.hpp"
@@ -34,10 +35,44 @@ TEST(Forces, DescribeThemselvesAndNameParametersOutOfRange) {
         EXPECT_EQ(kind.problem(world), nullptr);
         texts.push_back(kind.text(world));
     }
-    EXPECT_EQ(texts, (std::vector<std::string>{"gravity of (0, -9.81) m/s2", ""}));
+    EXPECT_EQ(texts, (std::vector<std::string>{"gravity of (0, -9.81) m/s2", "", "", ""}));
     world = {{}, 10.0, -1.0};
     EXPECT_EQ(force_kinds()[0].text(world), "no gravity");
     EXPECT_STREQ(force_kinds()[1].problem(world), "drag_1_s is not >= 0");
+    world.wind_m_s = {2.0, 0.0};
+    world.gusts = {{1.0, 0.5}, 0.25, 30.0};
+    EXPECT_EQ(force_kinds()[2].text(world), "wind of (2, 0) m/s");
+    EXPECT_EQ(force_kinds()[3].text(world), "gusts of (1, 0.5) m/s at 0.25 Hz");
+    world.gusts.frequency_hz = 1e6;
+    EXPECT_STREQ(force_kinds()[3].problem(world), "frequency_hz is not within its range");
+}
+
+TEST(Forces, OfAMovingFrameAreLessItsAccelerationAndWind) {
+    WorldDef world;
+    world.drag_1_s = 0.5;
+    world.wind_m_s = {3.0, 1.0};
+    world.gusts = {{1.0, 0.0}, 0.7, 10.0};
+    TimeFunction displacement;
+    displacement.add_wave({{0.2, -0.1}, 0.9, 50.0});
+    const TimeFunction velocity = displacement.derivative();
+    const TimeFunction acceleration = velocity.derivative();
+    Forces forces(world);
+    Forces there = forces.seen_from(displacement);
+    EXPECT_FALSE(there.conserve_energy());
+    EXPECT_EQ(there.weight_m_s2(), (Vec2{0.0, -9.81}));
+    Forces later = there.from(0.6);
+    std::array<Vec2, 3> series{};
+    for (const double t : {0.0, 0.8, 2.3}) {
+        forces.set_time(t);
+        there.set_time(t);
+        later.set_time(t - 0.6);
+        const Vec2 off = forces.uniform_m_s2() - acceleration(t) - 0.5 * velocity(t) - there.uniform_m_s2();
+        EXPECT_LT(length(off.x, off.y), 1e-14);
+        EXPECT_LE(length(there.uniform_m_s2().x, there.uniform_m_s2().y), there.strength_m_s2());
+        EXPECT_NEAR(later.uniform_m_s2().x, there.uniform_m_s2().x, 1e-14);
+        there.expand(t, 0.1, series);
+        EXPECT_NEAR(series[0].x, there.uniform_m_s2().x, 1e-14);
+    }
 }
 
 TEST(Forces, DecayIsTheExponentialToRounding) {

@@ -72,6 +72,7 @@ StringContacts::StringContacts(const System& string, const Forces& forces, doubl
 
 bool StringContacts::resolve(System& string, std::vector<std::uint8_t>& is_taut, double time_s) {
     const std::size_t links = rest_m_.size();
+    forces_.set_time(time_s);
     measure(string);
     find_margin(string, is_taut, time_s);
     find_present(string, is_taut);

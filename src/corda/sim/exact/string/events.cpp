@@ -115,6 +115,7 @@ double StringEvents::raw_margin(std::size_t link) const {
 double StringEvents::measure(const Motion& motion, double time_s, double* margin) {
     count_work(1 + link_count_);
     motion.integrator.interpolate(time_s, y_.data());
+    motion.dynamics.set_time(time_s);
     read(motion.dynamics);
     double largest = -kNever;
     for (std::size_t k = 0; k < link_count_; ++k) {

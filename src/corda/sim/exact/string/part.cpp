@@ -127,6 +127,7 @@ Status StringPart::reach(double time_s, State& state) {
     output_.resize(integrator_->size());
     integrator_->interpolate(std::clamp(time_s - start_s_, integrator_->old_time_s(), integrator_->time_s()),
                              output_.data());
+    dynamics_->set_time(time_s - start_s_);
     dynamics_->project(output_.data());
     dynamics_->positions(output_.data(), local_);
     for (std::size_t i = 0; i < string_.particle_count(); ++i) {
@@ -146,7 +147,7 @@ bool StringPart::start(double first_step_s) {
     // Each of these costs about one update per particle.
     const std::size_t updates = 1 + string_.particle_count();
     count_work(updates);
-    dynamics_ = std::make_unique<ChainDynamics>(chains_of_string(string_, is_taut_, forces_));
+    dynamics_ = std::make_unique<ChainDynamics>(chains_of_string(string_, is_taut_, forces_.from(start_s_)));
     count_work(updates);
     StepControl control = step_control(dynamics_->inverse_timescale_1_s(), tolerance_);
     control.first_s = std::max(control.first_s, first_step_s);
