@@ -66,7 +66,9 @@ view::CurvePoint turning_of(const TrackedParticle& tracked, const State& state,
     const std::size_t pin = tracked.pin.value_or(i);
     const double dx_m = state.x_m[i] - state.x_m[pin];
     const double dy_m = state.y_m[i] - state.y_m[pin];
-    const double rate = (dx_m * state.vy_m_s[i] - dy_m * state.vx_m_s[i]) / (dx_m * dx_m + dy_m * dy_m);
+    const double vx_m_s = state.vx_m_s[i] - (tracked.pin ? state.vx_m_s[pin] : 0.0);
+    const double vy_m_s = state.vy_m_s[i] - (tracked.pin ? state.vy_m_s[pin] : 0.0);
+    const double rate = (dx_m * vy_m_s - dy_m * vx_m_s) / (dx_m * dx_m + dy_m * dy_m);
     double angle = angle_rad(dx_m, -dy_m);
     if (last != nullptr) {
         // The geometric mean of the rates is that of a uniform rotation; past the pin in a straight line, it

@@ -213,8 +213,12 @@ std::vector<std::size_t> free_ends(const System& system) {
 
 std::vector<std::size_t> traced_particles(const System& system, const StyleDef& style) {
     if (style.trail_s == 0.0) return {};
-    if (style.trail_of.empty()) return free_ends(system);
     std::vector<std::size_t> particles;
+    if (style.trail_of.empty()) {
+        particles = free_ends(system);
+        for (const MoveDef& move : system.moves) particles.push_back(move.pin);
+        return particles;
+    }
     std::vector<bool> is_traced(system.particle_count());
     for (const Body& body : system.bodies) {
         const auto count = static_cast<std::int64_t>(body.particle_count);
@@ -377,7 +381,7 @@ void draw_pose(const SceneView& view, const State& state, const Camera& camera, 
 
 void draw_supports(const SceneView& view, const State& state, const Camera& camera, DrawList& list) {
     list.add_layer(view.colors.support);
-    view.supports.draw(camera, list);
+    view.supports.draw(state, camera, list);
     if (view.style.markers != Markers::kNone) draw_markers(view, true, state, camera, list);
 }
 

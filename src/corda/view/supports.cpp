@@ -62,12 +62,14 @@ void Supports::add_pins(const System& system, const Body& body, std::span<const 
         const bool is_clamped = !body.is_net && i > body.first_particle && system.is_pinned(i - 1);
         if (!system.is_pinned(i) || is_clamped) continue;
         const Vec2 pin_m{system.x_m[i], system.y_m[i]};
-        const bool has_plate = up_ != Vec2{} && top_m <= local(pin_m).up + hidden_m;
+        const bool moves = std::ranges::find(system.moves, i, &MoveDef::pin) != system.moves.end();
+        const bool has_plate = !moves && up_ != Vec2{} && top_m <= local(pin_m).up + hidden_m;
         if (has_plate)
             plates_.push_back({pin_m, std::clamp(line_px, width_px(kPlateWidth, side_px_),
                                                  kMaxPlateWidths * width_px(kPlateWidth, side_px_))});
         else
-            rings_.push_back({pin_m, std::max(kRingRadius * side_px_, kRingPerLine * line_px)});
+            rings_.push_back({pin_m, std::max(kRingRadius * side_px_, kRingPerLine * line_px),
+                              moves ? std::optional(i) : std::nullopt, motion[i]});
     }
 }
 
@@ -90,18 +92,19 @@ void Supports::list(std::vector<Drawn>& drawn) const {
     }
     for (const Ring& ring : rings_) {
         Drawn circle = at(ring.center_m);
+        if (ring.moving) circle.bounds.include(ring.way);
         circle.left_px = circle.right_px = circle.up_px = circle.down_px = ring.radius_px;
         drawn.push_back(circle);
     }
 }
 
-void Supports::draw(const Camera& camera, DrawList& list) const {
+void Supports::draw(const State& state, const Camera& camera, DrawList& list) const {
     const double length_px = kPlateLength * side_px_;
     const auto at_px = [&](Vec2 v) { return PixelPoint{camera.x_px(v.x), camera.y_px(v.y)}; };
     if (plates_.size() + rings_.size() > kMaxSupports) {
         const auto dot = [&](PixelPoint at) { list.add_capsule(at, at, width_px(kRingWidth, side_px_)); };
         for (const Plate& plate : plates_) dot(at_px(plate.pin_m));
-        for (const Ring& ring : rings_) dot(at_px(ring.center_m));
+        for (const Ring& ring : rings_) dot(at_px(ring.center_at(state)));
         return;
     }
     for (std::size_t i = 0; i < plates_.size();) {
@@ -120,7 +123,7 @@ void Supports::draw(const Camera& camera, DrawList& list) const {
     }
     const double ring_px = width_px(kRingWidth, side_px_);
     for (const Ring& ring : rings_)
-        list.add_ring(at_px(ring.center_m), ring.radius_px - 0.5 * ring_px, ring_px);
+        list.add_ring(at_px(ring.center_at(state)), ring.radius_px - 0.5 * ring_px, ring_px);
 }
 
 void Supports::draw_plate(PixelPoint first, double length_px, double plate_px, DrawList& list) const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,7 +13,7 @@ namespace corda::view {
 
 /// Supports of pinned particles: a hatched plate if no part of the body ever rises above the pin, otherwise a
 /// ring. "Above" is the axis direction closest to the one against gravity; without gravity all supports are
-/// rings. Touching plates are merged.
+/// rings, as are those of pins that move. Touching plates are merged.
 class Supports {
   public:
     Supports() = default;
@@ -22,8 +24,8 @@ class Supports {
 
     /// Adds the extents of the supports.
     void list(std::vector<Drawn>& drawn) const;
-    /// Draws into the last layer of `list`.
-    void draw(const Camera& camera, DrawList& list) const;
+    /// Draws into the last layer of `list`, at the places of a state.
+    void draw(const State& state, const Camera& camera, DrawList& list) const;
 
   private:
     /// Along the plate to the right, and upwards from it.
@@ -39,6 +41,11 @@ class Supports {
     struct Ring {
         Vec2 center_m;
         double radius_px = 0.0;
+        std::optional<std::size_t> moving;  ///< the particle in its centre, if it moves
+        MotionBounds way;                   ///< of that
+        [[nodiscard]] Vec2 center_at(const State& state) const {
+            return moving ? Vec2{state.x_m[*moving], state.y_m[*moving]} : center_m;
+        }
     };
 
     void add_pins(const System& system, const Body& body, std::span<const MotionBounds> motion,

@@ -31,7 +31,7 @@ DrawList draw(const System& system, Vec2 gravity_m_s2, double higher_m = 0.0, do
     list.height = 1000;
     list.add_layer({});
     Supports(system, gravity_m_s2, motion, kSidePx, std::array{line_px})
-        .draw(Camera({Vec2{0.0, 0.0}, 10.0}, {}, 1000, 1000), list);
+        .draw(State{0.0, system.x_m, system.y_m}, Camera({Vec2{0.0, 0.0}, 10.0}, {}, 1000, 1000), list);
     return list;
 }
 
