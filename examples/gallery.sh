@@ -30,7 +30,9 @@ double_pendulum still  5.3
 fifty_pendulums still  7.2 --set overlay.time=true
 first           strobe 0,0.1,0.2,0.3,0.4,0.5,0.6
 folded_chain    still  0.58
+gusts           still  1.6
 hammock         still  0.6
+kapitza         still  1.1
 materials       still  0.6
 pendulum_wave   still  4
 period          still  6
