@@ -97,8 +97,7 @@ TimeFunction TimeFunction::derivative() const {
 }
 
 TimeFunction TimeFunction::turned(Vec2 cosine_sine) const {
-    const auto [c, s] = cosine_sine;
-    const auto turn = [&](Vec2& v) { v = c * v + s * left_of(v); };
+    const auto turn = [&](Vec2& v) { v = cosine_sine.x * v + cosine_sine.y * left_of(v); };
     TimeFunction result = *this;
     turn(result.constant_);
     for (Wave& wave : result.waves_) turn(wave.sine), turn(wave.cosine);
