@@ -169,6 +169,17 @@ class Generator:
                     del body[key]
         if "pinned" in body:
             body["pinned"] = sorted({self.random.randrange(particles) for _ in range(self.random.choice((0, 1, 1, 2)))})
+        if "moves" in body:
+            pins = body.setdefault("pinned", [0])
+            body["moves"] = [self.fit_move(pin, move) for pin, move in zip(pins, body["moves"])]
+            if not body["moves"]:
+                del body["moves"]
+
+    def fit_move(self, pin, move):
+        """Adapts a move to its pin, and a path's start and order."""
+        path = [{"t": 0.0, "by": [0.0, 0.0]}, *sorted(move.get("path", []), key=lambda key: key["t"])]
+        path = [key for i, key in enumerate(path) if i == 0 or key["t"] > path[i - 1]["t"]]
+        return move | {"pin": pin, "path": path}
 
 
 def to_toml(value):
