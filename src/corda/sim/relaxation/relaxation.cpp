@@ -172,7 +172,7 @@ void Relaxation::set_pushes() {
     for (const MovingPin& pin : pins_) {  // to where the pin will be
         const Vec2 next_m = pin.place_m(static_cast<double>(step_ + 1) * step_s_);
         RelaxationMove& move = motion_.moves[pin.particle];
-        const double* const here_m = &motion_.position_m[2 * pin.particle];
+        const double* const here_m = &motion_.position_m[std::size_t{2} * pin.particle];
         move.push_m = {(next_m.x - here_m[0]) - motion_.keep * move.move_m[0],
                        (next_m.y - here_m[1]) - motion_.keep * move.move_m[1]};
     }
