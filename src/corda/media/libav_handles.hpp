@@ -54,6 +54,7 @@ inline void free_io(AVIOContext** context) {
 using CodecContext = std::unique_ptr<AVCodecContext, PointerPointerDeleter<&avcodec_free_context>>;
 using Packet = std::unique_ptr<AVPacket, PointerPointerDeleter<&av_packet_free>>;
 using Frame = std::unique_ptr<AVFrame, PointerPointerDeleter<&av_frame_free>>;
+using BufferPool = std::unique_ptr<AVBufferPool, PointerPointerDeleter<&av_buffer_pool_uninit>>;
 using InputFormat = std::unique_ptr<AVFormatContext, PointerPointerDeleter<&avformat_close_input>>;
 using CodecParameters = std::unique_ptr<AVCodecParameters, PointerPointerDeleter<&avcodec_parameters_free>>;
 using IoContext = std::unique_ptr<AVIOContext, PointerPointerDeleter<&free_io>>;

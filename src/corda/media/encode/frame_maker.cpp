@@ -25,7 +25,7 @@ ReadyFrame FrameMaker::make(std::int64_t k, const Image& image, const Damage& da
     const PixelRect whole = image.rect();
     const auto parts = frame_ ? std::span(damage) : std::span(&whole, 1);
     if (!parts.empty()) {
-        Frame next = new_frame(av_get_pix_fmt(format_.pixel_format), image.width(), image.height());
+        Frame next = new_frame(av_get_pix_fmt(format_.pixel_format), image.width(), image.height(), &pool_);
         if (frame_)
             check_libav(av_frame_copy(next.get(), frame_.get()), ExitCode::kTemporary,
                         "cannot copy a picture");

@@ -36,6 +36,7 @@ class FrameMaker : NonCopyable {
     std::int64_t first_;
     PictureInfo info_;
     AlphaBleed bleed_;        ///< of 4:2:0 with alpha
+    BufferPool pool_;         ///< of frames: memory that the system takes back costs as much as converting
     Frame frame_;             ///< shared with libav by reference count: what differs is drawn into a new one
     std::int64_t last_ = -1;  ///< the number of frame_
 };
