@@ -23,14 +23,9 @@ ReadyFrame FrameMaker::make(std::int64_t k, const Image& image, const Damage& da
     if (k == first_) ready.drawn = image;
     const LogCapture log;
     const PixelRect whole = image.rect();
+    const auto format = av_get_pix_fmt(format_.pixel_format);
     const auto parts = frame_ ? std::span(damage) : std::span(&whole, 1);
-    if (!parts.empty()) {
-        Frame next = new_frame(av_get_pix_fmt(format_.pixel_format), image.width(), image.height(), &pool_);
-        if (frame_)
-            check_libav(av_frame_copy(next.get(), frame_.get()), ExitCode::kTemporary,
-                        "cannot copy a picture");
-        frame_ = std::move(next);
-    }
+    if (!frame_) frame_ = new_frame(format, image.width(), image.height());
     const bool bleeds = std::string_view(format_.pixel_format) == "yuva420p";
     for (const PixelRect& part : parts) {
         ready.changed.push_back(bleeds ? bleed_.update(image, part) : part);
@@ -38,7 +33,9 @@ ReadyFrame FrameMaker::make(std::int64_t k, const Image& image, const Damage& da
     }
     if (k != last_ + 1) ready.changed = {whole};
     last_ = k;
-    ready.pixels = check_allocated(Frame(av_frame_clone(frame_.get())), "a frame");
+    ready.pixels = new_frame(format, image.width(), image.height(), pool_);
+    check_libav(av_frame_copy(ready.pixels.get(), frame_.get()), ExitCode::kTemporary,
+                "cannot copy a picture");
     return ready;
 }
 

@@ -37,7 +37,7 @@ class FrameMaker : NonCopyable {
     PictureInfo info_;
     AlphaBleed bleed_;        ///< of 4:2:0 with alpha
     BufferPool pool_;         ///< of frames: memory that the system takes back costs as much as converting
-    Frame frame_;             ///< shared with libav by reference count: what differs is drawn into a new one
+    Frame frame_;             ///< the one made last; copies are given away, which another thread reads
     std::int64_t last_ = -1;  ///< the number of frame_
 };
 

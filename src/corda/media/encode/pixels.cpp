@@ -80,7 +80,7 @@ void convert_pixels(const Image& image, const PixelRect& part, AVFrame& frame) {
     convert_to_yuv444(image, inside, bits, planes);
 }
 
-Frame new_frame(AVPixelFormat format, int width, int height, BufferPool* pool) {
+Frame new_frame(AVPixelFormat format, int width, int height, BufferPool& pool) {
     Frame frame = check_allocated(Frame(av_frame_alloc()), "a frame");
     frame->format = format;
     frame->width = width;
@@ -89,22 +89,23 @@ Frame new_frame(AVPixelFormat format, int width, int height, BufferPool* pool) {
     set_duration(*frame, 1);
     set_colors(format, *frame);
     frame->chroma_location = chroma_location(format);
-    if (pool == nullptr) {
-        check_libav(av_frame_get_buffer(frame.get(), 0), ExitCode::kTemporary, "cannot make a picture");
-        return frame;
-    }
-    // As av_frame_get_buffer() does: encoders may read beyond lines and rows.
     constexpr int kAlignment = 64;
-    const int rows = FFALIGN(height, 32);
+    const int rows = FFALIGN(height, 32);  // encoders may read beyond lines and rows
     const int bytes = av_image_get_buffer_size(format, width, rows, kAlignment);
     check_libav(bytes, ExitCode::kTemporary, "cannot make a picture");
-    if (!*pool) pool->reset(av_buffer_pool_init(static_cast<std::size_t>(bytes) + kAlignment, nullptr));
-    if (*pool) frame->buf[0] = av_buffer_pool_get(pool->get());
+    const auto room = static_cast<std::size_t>(bytes) + kAlignment;
+    if (!pool) pool = check_allocated(BufferPool(av_buffer_pool_init(room, nullptr)), "a picture");
+    frame->buf[0] = av_buffer_pool_get(pool.get());
     if (frame->buf[0] == nullptr) check_libav(AVERROR(ENOMEM), ExitCode::kTemporary, "cannot make a picture");
     check_libav(av_image_fill_arrays(frame->data, frame->linesize, frame->buf[0]->data, format, width, rows,
                                      kAlignment),
                 ExitCode::kTemporary, "cannot make a picture");
     return frame;
+}
+
+Frame new_frame(AVPixelFormat format, int width, int height) {
+    BufferPool pool;  // its memory stays with the frame
+    return new_frame(format, width, height, pool);
 }
 
 void AlphaBleed::search_row(const Image& image, int y, const PixelRect& grown, Found* row) const {

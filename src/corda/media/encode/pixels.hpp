@@ -14,9 +14,11 @@ namespace corda::media {
 /// corda::Error (kInternal) for other formats.
 void convert_pixels(const Image& image, const PixelRect& part, AVFrame& frame);
 
-/// A frame with room for its pixels, and with the tags of its pixel format. Its memory is from `pool`, if
-/// given: all frames of one have the same format and size. Throws corda::Error (kTemporary).
-[[nodiscard]] Frame new_frame(AVPixelFormat format, int width, int height, BufferPool* pool = nullptr);
+/// A frame with room for its pixels, and with the tags of its pixel format. Throws corda::Error (kTemporary).
+[[nodiscard]] Frame new_frame(AVPixelFormat format, int width, int height);
+
+/// One with memory from `pool`, which is made with the first: all its frames have one format and size.
+[[nodiscard]] Frame new_frame(AVPixelFormat format, int width, int height, BufferPool& pool);
 
 /// Sets the colour tags that a frame or a context of this pixel format gets: BT.709 in limited range with the
 /// sRGB transfer, or sRGB in R'G'B'.
