@@ -1,5 +1,7 @@
 #pragma once
 
+#include "corda/sim/defs.hpp"
+
 #define CORDA_INLINE [[gnu::always_inline]] inline
 
 namespace corda::sim {
@@ -34,6 +36,11 @@ CORDA_INLINE CosineSine<X> cosine_sine_of_small(const X& x) {
                        z * (-2.75573143513906633035e-07 +
                             z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
     return {cosine, sine};
+}
+
+/// A vector turned by the angle of this cosine and sine.
+inline Vec2 turned(Vec2 v, Vec2 cosine_sine) {
+    return cosine_sine.x * v + cosine_sine.y * left_of(v);
 }
 
 }  // namespace corda::sim

@@ -16,16 +16,14 @@
 namespace corda {
 namespace {
 
+using sim::is_finite;
+
 [[noreturn]] void fail(const std::string& what, const std::string& problem) {
     throw Refusal(Refusal::Reason::kDefinition, what + ": " + problem);
 }
 
 void require(bool holds, const std::string& what, const char* problem) {
     if (!holds) fail(what, problem);
-}
-
-bool is_finite(Vec2 v) {
-    return std::isfinite(v.x) && std::isfinite(v.y);
 }
 
 bool is_positive(double value) {

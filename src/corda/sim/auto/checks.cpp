@@ -9,6 +9,7 @@
 
 #include "corda/core/cancel.hpp"
 #include "corda/sim/auto/planner.hpp"
+#include "corda/sim/cosine_sine.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/exact/string/part.hpp"
 #include "corda/sim/moving_pins.hpp"
@@ -72,22 +73,22 @@ class Checks::Check : NonCopyable {
   public:
     Check(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
           std::size_t number, const std::vector<double>& longer_m = {})
-        : turn_(turn(number % kMaxCount)), system_(system) {
+        : cosine_sine_(kTurns.at(number % kMaxCount)), system_(system) {
         round_lengths(system_, number);
         if (number > 0) move_by_rounding(system_, static_cast<std::uint32_t>(number));
         for (std::size_t i = 0; i < system.particle_count(); ++i) {
-            const Vec2 position = turn_.of({system_.x_m[i], system_.y_m[i]});
-            const Vec2 velocity = turn_.of({system_.vx_m_s[i], system_.vy_m_s[i]});
+            const Vec2 position = turned({system_.x_m[i], system_.y_m[i]}, cosine_sine_);
+            const Vec2 velocity = turned({system_.vx_m_s[i], system_.vy_m_s[i]}, cosine_sine_);
             system_.x_m[i] = position.x;
             system_.y_m[i] = position.y;
             system_.vx_m_s[i] = velocity.x;
             system_.vy_m_s[i] = velocity.y;
         }
         for (MoveDef& move : system_.moves) {
-            for (WaveDef& wave : move.waves) wave.amplitude = turn_.of(wave.amplitude);
-            for (PathKeyDef& key : move.path) key.by_m = turn_.of(key.by_m);
+            for (WaveDef& wave : move.waves) wave.amplitude = turned(wave.amplitude, cosine_sine_);
+            for (PathKeyDef& key : move.path) key.by_m = turned(key.by_m, cosine_sine_);
         }
-        const Forces turned = forces.turned({turn_.cosine, turn_.sine});
+        const Forces turned_forces = forces.turned(cosine_sine_);
         const MaterialDef& material = system.bodies.front().material;
         const auto* exact = std::get_if<ExactDef>(&method);
         if (exact != nullptr && material.is_string && material.compliance_1_n == 0.0) {
@@ -98,9 +99,9 @@ class Checks::Check : NonCopyable {
                 string_ = string.get();
                 return string;
             };
-            solver_ = solve_in_frame_of_pins(system_, turned, method, make);
+            solver_ = solve_in_frame_of_pins(system_, turned_forces, method, make);
         } else {
-            solver_ = make_solver(system_, turned, {&method, 1}, frame_interval_s);
+            solver_ = make_solver(system_, turned_forces, {&method, 1}, frame_interval_s);
         }
         state_ = {0.0, system_.x_m, system_.y_m};
     }
@@ -123,23 +124,14 @@ class Checks::Check : NonCopyable {
     [[nodiscard]] std::uint64_t steps() const { return solver_->steps(); }
     /// Where it has a particle, in the scene's directions.
     [[nodiscard]] Vec2 position_m(std::size_t i) const {
-        return Turn{turn_.cosine, -turn_.sine}.of({state_.x_m[i], state_.y_m[i]});
+        return turned({state_.x_m[i], state_.y_m[i]}, {cosine_sine_.x, -cosine_sine_.y});
     }
 
   private:
-    /// An angle by its cosine and sine.
-    struct Turn {
-        double cosine;
-        double sine;
-        [[nodiscard]] Vec2 of(Vec2 v) const { return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y}; }
-    };
-    static Turn turn(std::size_t number) {
-        constexpr std::array<Turn, kMaxCount> kTurns{
-            {{0.8, 0.6}, {5.0 / 13.0, 12.0 / 13.0}, {24.0 / 25.0, 7.0 / 25.0}}};
-        return kTurns[number];
-    }
+    static constexpr std::array<Vec2, kMaxCount> kTurns{
+        {{0.8, 0.6}, {5.0 / 13.0, 12.0 / 13.0}, {24.0 / 25.0, 7.0 / 25.0}}};
 
-    Turn turn_;
+    Vec2 cosine_sine_;  ///< of the angle by which it is turned
     System system_;
     std::unique_ptr<Solver> solver_;
     const StringPart* string_ = nullptr;  ///< solver_, if it is one

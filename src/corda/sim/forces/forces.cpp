@@ -6,17 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "corda/sim/cosine_sine.hpp"
 #include "corda/sim/defs.hpp"
 
 namespace corda::sim {
 namespace {
 
-bool is_finite(Vec2 v) {
-    return std::isfinite(v.x) && std::isfinite(v.y);
-}
-
-/// One row per force. A new one needs nothing else but its field of WorldDef
-/// and its key.
+/// One row per force. A new one needs nothing else but its field of WorldDef and its key.
 constexpr ForceKind kForces[] = {
     // Gravity: the same acceleration for every mass.
     {.term =
@@ -43,7 +39,7 @@ constexpr ForceKind kForces[] = {
          [](const WorldDef& world) {
              return world.drag_1_s == 0.0 ? "" : fmt::format("linear drag of {} 1/s, exact", world.drag_1_s);
          }},
-    // What the air adds to that if it moves.
+    // Wind: moving air adds drag times its velocity.
     {.term =
          [](const WorldDef& world) {
              return ForceTerm{{}, 0.0, world.drag_1_s * world.wind_m_s};
@@ -77,6 +73,10 @@ constexpr ForceKind kForces[] = {
 
 std::span<const ForceKind> force_kinds() {
     return kForces;
+}
+
+bool is_finite(Vec2 v) {
+    return std::isfinite(v.x) && std::isfinite(v.y);
 }
 
 const char* problem_of(const WaveDef& wave) {
@@ -128,9 +128,8 @@ Forces Forces::seen_from(const TimeFunction& displacement) const {
 }
 
 Forces Forces::turned(Vec2 cosine_sine) const {
-    const auto turn = [&](Vec2 v) { return cosine_sine.x * v + cosine_sine.y * left_of(v); };
-    Forces forces(ForceTerm{turn(sum_.weight_m_s2), sum_.drag_1_s, turn(sum_.push_m_s2),
-                            sum_.change_m_s2.turned(cosine_sine)});
+    Forces forces(ForceTerm{sim::turned(sum_.weight_m_s2, cosine_sine), sum_.drag_1_s,
+                            sim::turned(sum_.push_m_s2, cosine_sine), sum_.change_m_s2.turned(cosine_sine)});
     forces.zero_s_ = zero_s_;
     return forces;
 }

@@ -28,6 +28,8 @@ struct ForceKind {
     std::string (*text)(const WorldDef&);
 };
 
+[[nodiscard]] bool is_finite(Vec2 v);
+
 /// The field of a wave that is out of its range, as above; nullptr: none is.
 [[nodiscard]] const char* problem_of(const WaveDef& wave);
 
@@ -58,7 +60,7 @@ class Forces {
     [[nodiscard]] double next_key_s(double time_s) const {
         return sum_.change_m_s2.next_key_s(zero_s_ + time_s) - zero_s_;
     }
-    /// The largest angular frequency of what depends on time, 1/s.
+    /// The largest angular frequency of the waves in them, 1/s; 0 without any.
     [[nodiscard]] double frequency_1_s() const { return sum_.change_m_s2.frequency_1_s(); }
     /// The same forces with times counted from `time_s`, which is the time set.
     [[nodiscard]] Forces from(double time_s) const;

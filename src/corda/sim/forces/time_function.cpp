@@ -97,7 +97,7 @@ TimeFunction TimeFunction::derivative() const {
 }
 
 TimeFunction TimeFunction::turned(Vec2 cosine_sine) const {
-    const auto turn = [&](Vec2& v) { v = cosine_sine.x * v + cosine_sine.y * left_of(v); };
+    const auto turn = [&](Vec2& v) { v = sim::turned(v, cosine_sine); };
     TimeFunction result = *this;
     turn(result.constant_);
     for (Wave& wave : result.waves_) turn(wave.sine), turn(wave.cosine);

@@ -32,8 +32,8 @@ class TimeFunction {
     /// Always 0.
     [[nodiscard]] bool empty() const { return waves_.empty() && pieces_.empty() && constant_ == Vec2{}; }
     [[nodiscard]] Vec2 operator()(double time_s) const;
-    /// Writes the coefficients of the series in (t - time_s) / unit_s, as many as fit; at a key, those of
-    /// what follows it.
+    /// Writes the coefficients of the series in (t - time_s) / unit_s, as many as fit. At a key they are
+    /// those of the piece that starts there.
     void expand(double time_s, double unit_s, std::span<Vec2> coefficients) const;
     /// The first key after `time_s`, beyond which the series is another one; infinite if there is none.
     [[nodiscard]] double next_key_s(double time_s) const;
