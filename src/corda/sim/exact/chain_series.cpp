@@ -346,9 +346,7 @@ Status ChainPart::step(Mover& mover) {
     // Time and step agree to the last bit, so that no rounding of times adds up.
     double wanted_s = std::min(longest_step_s, largest_s);
     if (mover.chain.ends_pinned) wanted_s = past_line(mover, wanted_s);
-    // Two steps up to a key are of one length, so that none is very short.
-    const double rest_s = dynamics_.next_key_s(mover.end_s) - mover.end_s;
-    if (2.0 * wanted_s > rest_s) wanted_s = wanted_s < rest_s ? 0.5 * rest_s : rest_s;
+    wanted_s = StepControl::step_before_key(wanted_s, dynamics_.next_key_s(mover.end_s) - mover.end_s);
     const double end_s = mover.end_s + wanted_s;
     const double step_s = end_s - mover.end_s;
     if (!(step_s > control.smallest_s) || mover.steps == StepControl::kMaxSteps) return Status::kDiverged;

@@ -248,10 +248,8 @@ Status Dop853::step() {
     const double key_s = ode_.next_key_s(time_s_);
     while (accepted_ + rejected_ < StepControl::kMaxSteps) {
         // Time and step agree to the last bit, so that no rounding of times adds up.
-        double end_s = time_s_ + next_step_s_;
-        // Two steps up to a key are of one length, so that none is very short.
-        if (2.0 * next_step_s_ > key_s - time_s_)
-            end_s = next_step_s_ < key_s - time_s_ ? time_s_ + 0.5 * (key_s - time_s_) : key_s;
+        const double wanted_s = StepControl::step_before_key(next_step_s_, key_s - time_s_);
+        const double end_s = wanted_s == key_s - time_s_ ? key_s : time_s_ + wanted_s;
         const double step_s = end_s - time_s_;
         if (!(step_s > control_.smallest_s)) return Status::kDiverged;
         count_work(1 + y_.size());

@@ -21,7 +21,7 @@ class Ode : NonCopyable {
   public:
     virtual ~Ode() = default;
 
-    /// Sets the time t of what follows; at first it is 0.
+    /// Sets the time t for the other calls; at first it is 0.
     virtual void set_time(double time_s) { static_cast<void>(time_s); }
 
     /// The first time after `time_s` at which a derivative of f jumps, so that a step must end there;
@@ -67,6 +67,13 @@ struct StepControl {
     double smallest_s = 1e-14;  ///< the run has diverged if a step would have to be shorter
     /// The run has diverged if it would take more steps: a day of computing even for a short rope.
     static constexpr std::uint64_t kMaxSteps = 1'000'000'000;
+
+    /// The step to take where a step must end after `rest_s`. The last two are of one length, so that none is
+    /// very short.
+    [[nodiscard]] static double step_before_key(double wanted_s, double rest_s) {
+        if (2.0 * wanted_s <= rest_s) return wanted_s;
+        return wanted_s < rest_s ? 0.5 * rest_s : rest_s;
+    }
 };
 
 /// The explicit Runge-Kutta method of order 8 by Dormand and Prince with Hairer's error estimate (orders 5
