@@ -75,8 +75,7 @@ const Plan& Film::plan() const {
 
 std::optional<double> Film::error_estimate_px() const {
     if (!plan().error_estimate_m) return std::nullopt;
-    return view::errors_shown(camera()) * *plan().error_estimate_m * scene().video.height_px /
-           view::least_height_m(camera(), *camera().height_m);
+    return view::error_px(camera(), *plan().error_estimate_m, *camera().height_m, scene().video.height_px);
 }
 
 const CameraDef& Film::camera() const {

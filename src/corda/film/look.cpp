@@ -261,8 +261,7 @@ double PictureScale::largest_error_px_per_metre(const MotionBounds& bounds) cons
     const double height_m =
         *view::fit_camera(scene_->camera, origin_m_, lines, video.width_px, video.height_px, insets_)
              .height_m;
-    return view::errors_shown(scene_->camera) * video.height_px /
-           view::least_height_m(scene_->camera, height_m);
+    return view::error_px(scene_->camera, 1.0, height_m, video.height_px);
 }
 
 }  // namespace corda::film

@@ -348,10 +348,10 @@ std::optional<std::string> error_estimate_text(const Film& film) {
             without_estimate.push_back(i);
     }
     if (!largest_m || plan.horizon_s == 0.0) return std::nullopt;
-    const double error_px_per_metre = view::errors_shown(film.camera()) * film.scene().video.height_px /
-                                      view::least_height_m(film.camera(), film.camera().height_m.value());
-    std::string text = fmt::format("{:.2g} px, {:.2g} m", view::rounded_up(error_px_per_metre * *largest_m),
-                                   view::rounded_up(*largest_m));
+    const double largest_px = view::error_px(film.camera(), *largest_m, film.camera().height_m.value(),
+                                             film.scene().video.height_px);
+    std::string text =
+        fmt::format("{:.2g} px, {:.2g} m", view::rounded_up(largest_px), view::rounded_up(*largest_m));
     if (plan.horizon_s) text += fmt::format(", up to {:.6g} s", *plan.horizon_s);
     if (!without_estimate.empty()) text += ", except " + bodies_text(film.system(), without_estimate);
     return text;

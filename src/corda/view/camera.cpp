@@ -107,6 +107,10 @@ double errors_shown(const CameraDef& def) {
     return def.follow ? 2.0 : 1.0;
 }
 
+double error_px(const CameraDef& def, double error_m, double height_m, int height_px) {
+    return errors_shown(def) * error_m * height_px / least_height_m(def, height_m);
+}
+
 CameraDef fit_camera(const CameraDef& def, Vec2 origin_m, std::span<const Drawn> drawn, int width_px,
                      int height_px, const Insets& insets) {
     if (def.center_m && def.height_m) return def;

@@ -35,6 +35,10 @@ struct Insets {
 /// worst case the other way.
 [[nodiscard]] double errors_shown(const CameraDef& def);
 
+/// The largest displacement in a picture of `height_px`, in pixels, by errors of positions of `error_m`. The
+/// camera shows `height_m` where its path gives no height.
+[[nodiscard]] double error_px(const CameraDef& def, double error_m, double height_m, int height_px);
+
 /// Returns `def` with centre and height filled in so that everything drawn fits into a picture of this size,
 /// in the middle of the space that `insets` leave. Keeps the fields that `def` gives. `origin_m` is the
 /// system's. If one is missing, `drawn` must not be empty.
