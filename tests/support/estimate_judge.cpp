@@ -152,7 +152,7 @@ void compare_in_picture(const Film& film, const EstimateCase& given, Verdict& ve
     const Vec2 origin_m = film.system().origin_m;
     verdict.ratio = 0.0;
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
-        // The camera sees what is 0.2 s ahead.
+        // A camera depends on the motion up to 0.2 s ahead.
         if (film.time_s(k) > until_s - (verdict.horizon_s ? 0.2 : 0.0)) break;
         const Vec2 center_m = *film.camera_at(film.time_s(k)).center_m - origin_m;
         const std::array<Real, 2> center = followed(truth, scene, static_cast<std::size_t>(k));

@@ -38,8 +38,9 @@ class MovingFrame final : public Solver {
         return Status::kOk;
     }
     [[nodiscard]] double energy_j() const override {
-        read_velocities(place_);
-        const Energy energy = meter_.of(place_);
+        State place = place_;
+        read_velocities(place);
+        const Energy energy = meter_.of(place);
         return energy.kinetic_j + energy.potential_j();
     }
     [[nodiscard]] bool has_branched() const override { return inside_->has_branched(); }
@@ -66,7 +67,7 @@ class MovingFrame final : public Solver {
     TimeFunction velocity_;
     std::unique_ptr<Solver> inside_;
     EnergyMeter meter_;
-    mutable State place_;  ///< the last state; energy_j() reads its velocities
+    State place_;  ///< the last positions
 };
 
 }  // namespace

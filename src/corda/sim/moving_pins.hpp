@@ -21,7 +21,7 @@ namespace corda::sim {
 /// The displacement that all pins of a body have in common; 0 if none moves, empty if they move differently.
 [[nodiscard]] std::optional<TimeFunction> common_displacement(const System& body);
 
-/// A pin that moves, and its motion at the time that was set last, at first 0.
+/// A pin that moves, and how.
 struct MovingPin {
     std::uint32_t particle = 0;
     Vec2 start_m;

@@ -193,8 +193,8 @@ struct Failure {
 /// in which its difference grew tenfold. Infinite if the difference has not grown much.
 double gain_by_growth_s(const System& system, const Trial& trial, double ran_s, double end_s) {
     constexpr double kDigitsOfHopeless = 1.2;
-    constexpr double kSlower =
-        4.0;  // than when it exceeded the tolerance: errors of chaotic motions grow in bursts
+    // Than when it exceeded the tolerance: errors of chaotic motions grow in bursts.
+    constexpr double kSlower = 4.0;
     // Bars that come into line, and strings that come taut, part a run from its check in no time.
     if (!std::holds_alternative<ExactDef>(trial.method) || has_kinks(system) || trial.diverged ||
         ran_s >= end_s)
@@ -202,9 +202,9 @@ double gain_by_growth_s(const System& system, const Trial& trial, double ran_s, 
     return kSlower / kDigitsOfHopeless * (ran_s - trial.reached_s);
 }
 
-/// The trial to run after one that failed: of those that are worth their price, the cheapest that is expected
-/// to hold, or else the one that is expected to reach farthest. std::nullopt: none is worth its price, and
-/// the run of the failed trial is drawn.
+/// The trial to run after one that failed. Of those that are worth their price, it is the cheapest that is
+/// expected to hold; if none is, the one that is expected to reach farthest. std::nullopt: none is worth its
+/// price, and the run of the failed trial is drawn.
 ///
 /// A price is the work of the run to the end and of the checks up to the time that is expected to be reached,
 /// less that of ending the run that failed. All are in parts of a whole run of the method that failed.
@@ -284,8 +284,8 @@ bool has_come_into_line(const System& system, const Trial& trial) {
 
 /// Runs trials, cheapest first, until one holds to the end or no other is worth its price, and makes the last
 /// one the plan. Ends at the first trial of `exact` that diverges for a graph of rigid bars: they have come
-/// into line. Once trials have taken the work that planning may take, the run that has failed is drawn,
-/// unless its rest would take as much; then the one that failed before it is, if there is one.
+/// into line. Once trials have taken the work that planning may take, the run that failed last is drawn. If
+/// its rest would take more than a run may, the run before it is drawn; without one, the body is refused.
 void run_until_one_holds(const System& system, const WorldDef& world, const PlanDef& def,
                          std::vector<Candidate> candidates, BodyPlan& plan, Recording& recording) {
     const double end_s = def.timeline.time_s(def.timeline.size() - 1);
