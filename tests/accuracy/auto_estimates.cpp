@@ -110,6 +110,7 @@ INSTANTIATE_TEST_SUITE_P(OfOther, AutoEstimates, testing::ValuesIn(test::other_f
 INSTANTIATE_TEST_SUITE_P(OfMassesAndLinkages, AutoEstimates,
                          testing::ValuesIn(test::mass_and_linkage_families()), kName);
 INSTANTIATE_TEST_SUITE_P(OfLooks, AutoEstimates, testing::ValuesIn(test::look_families()), kName);
+INSTANTIATE_TEST_SUITE_P(OfDriven, AutoEstimates, testing::ValuesIn(test::driven_families()), kName);
 
 /// A scene of which an estimate was false once.
 struct Fixed {

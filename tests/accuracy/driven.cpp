@@ -16,6 +16,7 @@
 #include "corda/sim/exact/chain_dynamics.hpp"
 #include "corda/sim/moving_pins.hpp"
 #include "corda/sim/relaxation/relaxation.hpp"
+#include "support/extended_motion.hpp"
 #include "support/slope.hpp"
 #include "support/solver_run.hpp"
 
@@ -143,6 +144,21 @@ TEST(DrivenR12ToR16, AreExactByEveryPartOfExact) {
         const double implicit_m = error_m(driven, system, ExactDef{1e-9, true});
         std::printf("%s by implicit steps at 1e-9: %.1e m\n", driven.name, implicit_m);
         EXPECT_LT(implicit_m, driven.is_late ? 1e-4 : 1e-7) << driven.name;
+    }
+}
+
+TEST(DrivenR12ToR16, HoldForTheTruthOfEstimates) {
+    for (const Driven& driven : driven_ropes()) {
+        const System system = build_system({&driven.rope, 1});
+        test::ExtendedMotion truth(system, driven.world);
+        for (const auto& [time_s, tip_m] : driven.tips) {
+            ASSERT_TRUE(truth.advance_to(time_s)) << truth.failure();
+            const std::size_t tip = system.particle_count() - 1;
+            const auto error =
+                static_cast<double>(std::hypot(truth.x_m(tip) - tip_m.x, truth.y_m(tip) - tip_m.y));
+            std::printf("%s at %g s by the truth: %.1e m\n", driven.name, time_s, error);
+            EXPECT_LT(error, 2e-13) << driven.name;  // 2.8e-14
+        }
     }
 }
 
@@ -327,6 +343,57 @@ TEST(MovingPins, CarryNetsAndStretchingRopes) {
                     0.3 + 0.1 * (std::sin(2.0 * std::numbers::pi * 1.3 * 1.2 + std::numbers::pi / 9.0) -
                                  std::sin(std::numbers::pi / 9.0)),
                     1e-12);
+    }
+}
+
+TEST(MovingPin, HoldsAPendulumOnItsHeadFromASpeedOn) {
+    // From 5 degrees: at rest on average if (a w)^2 > 2 g L, until 2 g L / (a w)^2 is the cosine of its
+    // angle.
+    constexpr double kAmplitude = 0.02;
+    const auto least_height_m = [](double ratio, const MethodDef& method) {
+        const double frequency_hz = ratio * std::sqrt(2.0 * 9.81) / kAmplitude / (2.0 * std::numbers::pi);
+        test::SolverRun<> run(moved(reference::straight_rope(1, 1.0, 175.0),
+                                    {0, {{{0.0, kAmplitude}, frequency_hz, 90.0}}, {}}),
+                              WorldDef{}, method);
+        double lowest_m = 1.0;
+        for (int k = 1; k <= 500; ++k) {
+            EXPECT_TRUE(run.go(0.01 * k));
+            lowest_m = std::min(lowest_m, run.tip_y() - run.state().y_m[0]);
+        }
+        return lowest_m;
+    };
+    for (const MethodDef& method :
+         {MethodDef(ExactDef{}), MethodDef(ExactDef{1e-9, true}), MethodDef(RattleDef{4, 1.0 / 2000.0}),
+          MethodDef(RelaxationDef{1.0 / 8000.0, 64})}) {
+        EXPECT_LT(least_height_m(0.9, method), -0.9);
+        EXPECT_GT(least_height_m(1.1, method), 0.98);
+    }
+}
+
+TEST(MovingPin, DrivesASmallSwingAsTheLinearOscillator) {
+    // x'' + c x' + w0^2 (x - a sin(w t)) = 0 has the amplitude w0^2 a / sqrt((w0^2 - w^2)^2 + (c w)^2).
+    constexpr double kAmplitude = 1e-4;
+    WorldDef world;
+    world.drag_1_s = 0.2;
+    const double own_1_s = std::sqrt(9.81);
+    for (const double ratio : {0.8, 1.0, 1.25}) {
+        const double drive_1_s = ratio * own_1_s;
+        for (const MethodDef& method : {MethodDef(ExactDef{1e-12}), MethodDef(RattleDef{4, 1.0 / 200.0})}) {
+            test::SolverRun<> run(
+                moved(reference::straight_rope(1, 1.0, 0.0),
+                      {0, {{{kAmplitude, 0.0}, drive_1_s / (2.0 * std::numbers::pi), 0.0}}, {}}),
+                world, method);
+            ASSERT_TRUE(run.go(150.0));  // what was at the start has decayed to 3e-7
+            State at = run.state();
+            at.vx_m_s.assign(2, 0.0);
+            at.vy_m_s.assign(2, 0.0);
+            run.solver().velocities(at);
+            const double squares = own_1_s * own_1_s - drive_1_s * drive_1_s;
+            const double expected_m = own_1_s * own_1_s * kAmplitude / length(squares, 0.2 * drive_1_s);
+            const double found_m = length(at.x_m[1], at.vx_m_s[1] / drive_1_s);
+            std::printf("resonance at %g: %.2e of the amplitude\n", ratio, found_m / expected_m - 1.0);
+            EXPECT_NEAR(found_m, expected_m, 5e-6 * expected_m);  // 9e-7
+        }
     }
 }
 

@@ -30,6 +30,9 @@ struct EstimateFamily {
 /// Motions that are looked at between frames, in rows that are nearly straight, or by a camera that follows.
 [[nodiscard]] std::span<const EstimateFamily> look_families();
 
+/// Pins that move, and wind.
+[[nodiscard]] std::span<const EstimateFamily> driven_families();
+
 /// A rope of 1 m from (0, 0) in directions around `angle` from straight down, in radians.
 [[nodiscard]] RopeDef crooked_rope(Random& random, int links, double angle, double spread);
 /// Removes the pins of a rope and gives it a random velocity and angular velocity.

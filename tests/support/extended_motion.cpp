@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace corda::test {
 namespace {
@@ -17,10 +18,58 @@ constexpr Real kVelocityShare = 1e-3L;
 /// Maximum number of steps for a scene, some minutes.
 constexpr long kMaxSteps = 300000;
 
+constexpr Real kTwoPi = 2 * std::numbers::pi_v<Real>;
+
+Real angle_of(const WaveDef& wave, Real time) {
+    return kTwoPi * (Real{wave.frequency_hz} * time + Real{wave.phase_deg} / 360);
+}
+
+using Pair = Eigen::Matrix<Real, 2, 1>;
+
+Pair pair_of(Vec2 v) {
+    return {v.x, v.y};
+}
+
+/// The second derivative of a pin's displacement.
+Pair acceleration_of(const MoveDef& move, Real time) {
+    Pair sum = Pair::Zero();
+    for (const WaveDef& wave : move.waves) {
+        const Real rate = kTwoPi * wave.frequency_hz;
+        sum -= rate * rate * std::sin(angle_of(wave, time)) * pair_of(wave.amplitude);
+    }
+    for (std::size_t i = 1; i < move.path.size(); ++i) {
+        const Real from = move.path[i - 1].time_s;
+        const Real takes = move.path[i].time_s - from;
+        const Real u = (time - from) / takes;
+        if (u <= 0 || u >= 1) continue;
+        // Of 10 u^3 - 15 u^4 + 6 u^5.
+        sum += (60 * u - 180 * u * u + 120 * u * u * u) / (takes * takes) *
+               (pair_of(move.path[i].by_m) - pair_of(move.path[i - 1].by_m));
+    }
+    return sum;
+}
+
+/// Upper bound of its length.
+Real largest_acceleration_of(const MoveDef& move) {
+    Real sum = 0;
+    for (const WaveDef& wave : move.waves) {
+        const Real rate = kTwoPi * wave.frequency_hz;
+        sum += rate * rate * pair_of(wave.amplitude).norm();
+    }
+    for (std::size_t i = 1; i < move.path.size(); ++i) {
+        const Real takes = move.path[i].time_s - move.path[i - 1].time_s;
+        sum += 6 / (takes * takes) * (pair_of(move.path[i].by_m) - pair_of(move.path[i - 1].by_m)).norm();
+    }
+    return sum;
+}
+
 }  // namespace
 
 ExtendedMotion::ExtendedMotion(const System& system, const WorldDef& world, const std::vector<Real>& start)
-    : count_(static_cast<Eigen::Index>(system.particle_count())), world_(world), bends_(system.bends) {
+    : count_(static_cast<Eigen::Index>(system.particle_count())),
+      world_(world),
+      bends_(system.bends),
+      moves_(system.moves) {
     y_ = Vector::Zero(4 * count_);
     rest_ = y_;
     for (Eigen::Index i = 0; i < count_; ++i) {
@@ -32,6 +81,9 @@ ExtendedMotion::ExtendedMotion(const System& system, const WorldDef& world, cons
         inverse_mass_.push_back(system.is_pinned(k) ? Real{0} : Real{1} / Real{system.mass_kg[k]});
         if (!system.is_pinned(k)) mass_ += system.mass_kg[k];
     }
+    strength_ = pair_of(world.gravity_m_s2).norm() +
+                world.drag_1_s * (pair_of(world.wind_m_s).norm() + pair_of(world.gusts.amplitude).norm());
+    for (const MoveDef& move : moves_) strength_ += largest_acceleration_of(move);
     size_ = largest_length_m(system);
     shortest_ = size_;
     for (const Body& body : system.bodies) add_links(system, body);
@@ -60,7 +112,7 @@ bool ExtendedMotion::advance_to(double time_s) {
     while (time_ < time_s) {
         if (++steps_ > kMaxSteps) return fail("the truth takes too many steps");
         const Real left = time_s - time_;
-        const Real step = std::min({step_, left, longest_step()});
+        const Real step = std::min({step_, left, longest_step(), next_key() - time_});
         Vector change;
         const Real error = extrapolate(step, change);
         const Real grow = std::pow(kShare / std::max(error, Real{1e-30L}), Real{1} / (2 * kColumns - 1));
@@ -86,6 +138,15 @@ bool ExtendedMotion::advance_to(double time_s) {
         step_ = step < step_ ? std::max(step_, wanted) : wanted;
     }
     return true;
+}
+
+/// The next time at which a derivative of a pin's displacement jumps.
+ExtendedMotion::Real ExtendedMotion::next_key() const {
+    Real next = HUGE_VALL;
+    for (const MoveDef& move : moves_)
+        for (const PathKeyDef& key : move.path)
+            if (key.time_s > time_) next = std::min(next, Real{key.time_s});
+    return next;
 }
 
 ExtendedMotion::Real ExtendedMotion::length_error_m() const {
@@ -163,12 +224,24 @@ void ExtendedMotion::push_along_bars(Vector& slope, const Vector& y, const Vecto
     }
 }
 
-void ExtendedMotion::derivative(const Vector& y, Vector& slope) {
+/// Of a free particle at rest, by gravity and wind.
+ExtendedMotion::Pair ExtendedMotion::uniform_acceleration(Real time) const {
+    const Pair gust = std::sin(angle_of(world_.gusts, time)) * pair_of(world_.gusts.amplitude);
+    return pair_of(world_.gravity_m_s2) + world_.drag_1_s * (pair_of(world_.wind_m_s) + gust);
+}
+
+void ExtendedMotion::derivative(const Vector& y, Real time, Vector& slope) {
     slope.head(2 * count_) = y.tail(2 * count_);
+    const Pair uniform = uniform_acceleration(time);
     for (Eigen::Index i = 0; i < count_; ++i) {
         const Real falls = inverse_mass_[static_cast<std::size_t>(i)] > 0 ? 1 : 0;
-        slope[2 * count_ + i] = falls * world_.gravity_m_s2.x - world_.drag_1_s * y[2 * count_ + i];
-        slope[3 * count_ + i] = falls * world_.gravity_m_s2.y - world_.drag_1_s * y[3 * count_ + i];
+        slope[2 * count_ + i] = falls * (uniform[0] - world_.drag_1_s * y[2 * count_ + i]);
+        slope[3 * count_ + i] = falls * (uniform[1] - world_.drag_1_s * y[3 * count_ + i]);
+    }
+    for (const MoveDef& move : moves_) {
+        const Pair acceleration = acceleration_of(move, time);
+        slope[2 * count_ + move.pin] = acceleration[0];
+        slope[3 * count_ + move.pin] = acceleration[1];
     }
     for (const Link& link : links_) {
         if (link.compliance == 0 || !link.pulls) continue;
@@ -196,7 +269,7 @@ Real ExtendedMotion::extrapolate(Real step, Vector& change) {
     std::array<Vector, kColumns> row;
     Vector slope(4 * count_);
     Vector start_slope(4 * count_);
-    derivative(y_, start_slope);
+    derivative(y_, time_, start_slope);
     const Real size = std::max(size_, y_.head(2 * count_).cwiseAbs().maxCoeff());
     const Real speed = std::max({y_.tail(2 * count_).cwiseAbs().maxCoeff(),
                                  step * start_slope.tail(2 * count_).cwiseAbs().maxCoeff(), Real{1e-30L}});
@@ -207,11 +280,11 @@ Real ExtendedMotion::extrapolate(Real step, Vector& change) {
         Vector before = rest_;
         Vector now = rest_ + h * start_slope;
         for (int m = 1; m < parts; ++m) {
-            derivative(y_ + now, slope);
+            derivative(y_ + now, time_ + m * h, slope);
             before += 2 * h * slope;
             before.swap(now);
         }
-        derivative(y_ + now, slope);
+        derivative(y_ + now, time_ + step, slope);
         change = (before + now + h * slope) / 2;
         for (int l = 0; l < j; ++l) {
             const Real ratio = Real(parts) / Real(2 * (j - l));

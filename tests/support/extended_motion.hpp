@@ -70,7 +70,8 @@ class ExtendedMotion {
     [[nodiscard]] Real coupling(const Vector& y, const Link& link, const Link& other) const;
     [[nodiscard]] Vector solve(const Vector& y, Vector right);
     void push_along_bars(Vector& slope, const Vector& y, const Vector& multiplier) const;
-    void derivative(const Vector& y, Vector& slope);
+    [[nodiscard]] Pair uniform_acceleration(Real time) const;
+    void derivative(const Vector& y, Real time, Vector& slope);
     [[nodiscard]] Real extrapolate(Real step, Vector& change);
     void add(const Vector& change);
     void project();
@@ -87,16 +88,19 @@ class ExtendedMotion {
                                   const std::function<Answer()>& answer);
     [[nodiscard]] Answer snapped(Vector& after);
     [[nodiscard]] Answer accelerated();
-    [[nodiscard]] Vector raw_margins(const Vector& y);
+    [[nodiscard]] Vector raw_margins(const Vector& y, Real time);
     [[nodiscard]] Vector margins(Real step);
     [[nodiscard]] Real highest(Eigen::Index link, Real low, Real high);
     [[nodiscard]] std::optional<Real> event_within(Real step);
     [[nodiscard]] Real event_before(Real low, Real high);
     [[nodiscard]] Real longest_step();
+    [[nodiscard]] Real next_key() const;
 
     Eigen::Index count_;
     WorldDef world_;
     std::vector<Bend> bends_;
+    std::vector<MoveDef> moves_;
+    Real strength_ = 0;  ///< bound of accelerations by what is not a bar
     std::vector<Real> inverse_mass_;
     std::vector<Link> links_;
     std::vector<std::size_t> rigid_;   ///< the rigid ones that pull

@@ -67,8 +67,7 @@ bool ExtendedMotion::begin() {
                              Vector::Constant(n, kRounding * speed)};
     if (!complement(present, speed_error, [&] { return found = snapped(after); })) return false;
     y_ = after;
-    const Real gravity = std::hypot(Real{world_.gravity_m_s2.x}, Real{world_.gravity_m_s2.y});
-    const Real pull = gravity + speed * speed / shortest_;
+    const Real pull = strength_ + speed * speed / shortest_;
     first_step_ = HUGE_VALL;
     begun_ = time_;
     for (std::size_t k = 0; k < links_.size(); ++k) {
@@ -87,7 +86,7 @@ bool ExtendedMotion::begin() {
         if (link.pulls && link.square == 0) link.square = apart(y_, link, 0).squaredNorm();
     }
     if (!has_strings_) return true;
-    const Vector margin = raw_margins(y_);
+    const Vector margin = raw_margins(y_, time_);
     for (std::size_t k = 0; k < links_.size(); ++k) {
         Link& link = links_[k];
         const bool is_taut = link.compliance == 0 && link.pulls;
@@ -144,7 +143,7 @@ ExtendedMotion::Answer ExtendedMotion::snapped(Vector& after) {
 /// they are not moving yet.
 ExtendedMotion::Answer ExtendedMotion::accelerated() {
     Vector slope(4 * count_);
-    derivative(y_, slope);
+    derivative(y_, time_, slope);
     const auto n = static_cast<Eigen::Index>(links_.size());
     Answer answer{Vector::Zero(n), Vector::Zero(n)};
     for (Eigen::Index k = 0; k < multiplier_.size(); ++k)
@@ -162,7 +161,7 @@ ExtendedMotion::Answer ExtendedMotion::accelerated() {
 
 /// Per link of a string, a margin that is negative until its event: minus the tension of a pulling rigid
 /// link, otherwise its distance in length from the event. -1 for other links.
-ExtendedMotion::Vector ExtendedMotion::raw_margins(const Vector& y) {
+ExtendedMotion::Vector ExtendedMotion::raw_margins(const Vector& y, Real time) {
     const auto n = static_cast<Eigen::Index>(links_.size());
     Vector margin = Vector::Constant(n, Real{-1});
     for (Eigen::Index k = 0; k < n; ++k) {
@@ -172,7 +171,7 @@ ExtendedMotion::Vector ExtendedMotion::raw_margins(const Vector& y) {
         margin[k] = link.pulls ? -longer : longer;
     }
     Vector slope(4 * count_);
-    derivative(y, slope);
+    derivative(y, time, slope);
     for (Eigen::Index k = 0; k < multiplier_.size(); ++k) {
         if (bar(k).is_string)
             margin[static_cast<Eigen::Index>(rigid_[static_cast<std::size_t>(k)])] =
@@ -184,7 +183,7 @@ ExtendedMotion::Vector ExtendedMotion::raw_margins(const Vector& y) {
 ExtendedMotion::Vector ExtendedMotion::margins(Real step) {
     Vector change = rest_;
     if (step > 0) static_cast<void>(extrapolate(step, change));
-    Vector margin = raw_margins(y_ + change);
+    Vector margin = raw_margins(y_ + change, time_ + step);
     for (std::size_t k = 0; k < links_.size(); ++k) margin[static_cast<Eigen::Index>(k)] -= links_[k].least;
     return margin;
 }
@@ -250,7 +249,7 @@ Real ExtendedMotion::event_before(Real low, Real high) {
 Real ExtendedMotion::longest_step() {
     if (!has_strings_) return HUGE_VALL;
     Vector slope(4 * count_);
-    derivative(y_, slope);
+    derivative(y_, time_, slope);
     const Real speed = slope.head(2 * count_).cwiseAbs().maxCoeff();
     const Real acceleration = slope.tail(2 * count_).cwiseAbs().maxCoeff();
     constexpr Real kPart = 0.15L;
