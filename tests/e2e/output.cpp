@@ -169,6 +169,26 @@ TEST_F(Output, SimulateAddsVelocitiesTensionsAndEnergy) {
     EXPECT_LT(numbers_of(dragged.substr(dragged.rfind('\n', dragged.size() - 2) + 1))[5], -1.0);
 }
 
+TEST_F(Output, SimulateAddsTheWorkOfPinsThatMove) {
+    const std::string driven = folder_.write(
+        "driven.toml",
+        "schema = 1\n[world]\nduration = 1\n[[rope]]\nhang = { links = 5, length = 1.0, angle_deg = 30.0 }\n"
+        "moves = [{ pin = 0, waves = [{ amplitude = [0.1, 0.0], frequency = 0.7 }] }]\n"
+        "[solver]\nmethod = \"exact\"\ntolerance = 1e-12\n");
+    std::istringstream lines(run_corda({"simulate", driven, "-o", "-", "--energy"}).out);
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_THAT(line, testing::EndsWith("energy_change_j,kinetic_j,potential_j,support_work_j"));
+    double largest_j = 0.0;
+    while (std::getline(lines, line)) {
+        const std::vector<double> cells = numbers_of(line);
+        ASSERT_EQ(cells.size(), 17U);
+        EXPECT_NEAR(cells[16], cells[13], 1e-9);  // without loss; 1e-12
+        largest_j = std::max(largest_j, std::abs(cells[16]));
+    }
+    EXPECT_GT(largest_j, 0.1);
+}
+
 TEST_F(Output, SimulateWritesTheTensionsThatAMethodKnowsAndWarnsOfTheRest) {
     const std::string mixed = folder_.write(
         "mixed.toml",

@@ -17,6 +17,7 @@
 #include "corda/film/motion.hpp"
 #include "corda/film/plan_text.hpp"
 #include "corda/film/series.hpp"
+#include "corda/sim/support_work.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -52,6 +53,11 @@ std::vector<film::Series> series_of(const Columns& columns) {
     return all;
 }
 
+/// Whether the last column is the work of the pins that move.
+bool has_work(const System& system, const Columns& columns) {
+    return columns.energy && !system.moves.empty();
+}
+
 /// How the columns of each body begin: with its label.
 std::vector<std::string> column_prefixes(const System& named) {
     std::vector<std::string> prefixes = body_keys(named);
@@ -79,6 +85,7 @@ std::string csv_header(const System& system, const Columns& columns, CsvStyle st
     for (std::size_t k = 0; columns.tensions && k < of_links.size(); ++k)
         line.add(fmt::format("{}tension{}_n", of_links[k], k));
     for (const film::Series& one : series_of(columns)) line.add(one.key);
+    if (has_work(system, columns)) line.add("support_work_j");
     return std::string(line.end());
 }
 
@@ -110,8 +117,8 @@ std::string columns_text(const System& system) {
     return text;
 }
 
-/// A number that the method does not know is an empty cell.
-void add_row(const film::Instant& instant, const Columns& columns, CsvLine& line) {
+/// A number that the method does not know is an empty cell. `work`: null without its column.
+void add_row(const film::Instant& instant, const Columns& columns, sim::SupportWork* work, CsvLine& line) {
     const State& state = instant.state;
     const System& system = instant.source.motion.system;
     const Vec2 origin_m = system.origin_m;
@@ -130,6 +137,7 @@ void add_row(const film::Instant& instant, const Columns& columns, CsvLine& line
             line.add(state.tension_n[k]);
     }
     for (const film::Series& one : series_of(columns)) line.add(one.value(instant));
+    if (work != nullptr) line.add(work->until_j(state.time_s));
 }
 
 nlohmann::json report(const Film& film) {
@@ -161,13 +169,17 @@ void write_states(const Console& console, const Film& film, const SimulateOption
     if (csv != nullptr)
         csv->write(csv_header(named_in_files(film.scene(), film.system()), options.columns, options.style));
     CsvLine line(options.style);
-    const film::SeriesSource source(film.motion());
+    const film::Motion& motion = film.motion();
+    const film::SeriesSource source(motion);
+    std::optional<sim::SupportWork> work;
+    if (has_work(motion.system, options.columns))
+        work.emplace(motion.system, motion.world, motion.methods(), motion.timeline->step_s());
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
         check_cancelled();
         const double time_s = film.time_s(k);
-        film.motion().for_each({&time_s, 1}, [&](const State& state, const Figures& figures) {
+        motion.for_each({&time_s, 1}, [&](const State& state, const Figures& figures) {
             if (csv == nullptr) return;
-            add_row({source, state, figures}, options.columns, line);
+            add_row({source, state, figures}, options.columns, work ? &*work : nullptr, line);
             csv->write(line.end());
         });
         progress.update(k + 1);
@@ -286,7 +298,9 @@ void add_simulate(CLI::App& app, Action& action) {
     command.add_flag(
         "--energy", options.columns.energy,
         "add the change of the energy since the start, and its parts: energy_change_j, kinetic_j, "
-        "potential_j, in which the weight has 0 J at the start");
+        "potential_j, in which the weight has 0 J at the start; if pins move, their work since the start "
+        "too: "
+        "support_work_j");
     command.add_flag("--diagnostics", options.columns.diagnostics,
                      "add energy error, strain, pin force and tension to every row");
     command

@@ -310,14 +310,11 @@ LoadMeter::LoadMeter(const System& system) {
     if (!system.bends.empty()) bends_.emplace(system, 0, system.particle_count());
 }
 
-std::optional<Loads> LoadMeter::of(const System& system, const State& state,
-                                   std::span<const double> tension_n) {
-    Loads loads;
+void LoadMeter::find_forces(const System& system, const State& state, std::span<const double> tension_n) {
     fx_n_.assign(system.particle_count(), 0.0);
     fy_n_.assign(system.particle_count(), 0.0);
     for (std::size_t k = 0; k < tension_n.size(); ++k) {
         if (tension_n[k] == 0.0) continue;
-        if (std::isnan(tension_n[k])) return std::nullopt;
         const auto [a, b, reach, rest_m] = system.bars[k];
         const Vec2 along{state.x_m[b] - state.x_m[a], state.y_m[b] - state.y_m[a]};
         const Vec2 pull_n = (tension_n[k] / length(along.x, along.y)) * along;
@@ -325,13 +322,31 @@ std::optional<Loads> LoadMeter::of(const System& system, const State& state,
         fy_n_[a] += pull_n.y;
         fx_n_[b] -= pull_n.x;
         fy_n_[b] -= pull_n.y;
-        loads.largest_tension_n = std::max(loads.largest_tension_n, std::abs(tension_n[k]));
     }
     if (bends_) bends_->add_bend_forces({state.x_m.data(), state.y_m.data()}, {fx_n_.data(), fy_n_.data()});
+}
+
+std::optional<Loads> LoadMeter::of(const System& system, const State& state,
+                                   std::span<const double> tension_n) {
+    Loads loads;
+    for (const double tension : tension_n) {
+        if (std::isnan(tension)) return std::nullopt;
+        loads.largest_tension_n = std::max(loads.largest_tension_n, std::abs(tension));
+    }
+    find_forces(system, state, tension_n);
     for (std::size_t i = 0; i < system.particle_count(); ++i) {
         if (system.is_pinned(i)) loads.pin_force_n = std::max(loads.pin_force_n, length(fx_n_[i], fy_n_[i]));
     }
     return loads;
+}
+
+double LoadMeter::support_power_w(const System& system, const State& state,
+                                  std::span<const double> tension_n) {
+    find_forces(system, state, tension_n);
+    double power_w = 0.0;
+    for (const MoveDef& move : system.moves)
+        power_w -= dot({fx_n_[move.pin], fy_n_[move.pin]}, {state.vx_m_s[move.pin], state.vy_m_s[move.pin]});
+    return power_w;
 }
 
 Figures larger_figures(const Figures& a, const Figures& b) {

@@ -127,9 +127,16 @@ class LoadMeter {
     [[nodiscard]] std::optional<Loads> of(const System& system, const State& state,
                                           std::span<const double> tension_n);
 
+    /// Power of the pins that move on what hangs from them, in W, of a state with velocities; NaN if a
+    /// tension is.
+    [[nodiscard]] double support_power_w(const System& system, const State& state,
+                                         std::span<const double> tension_n);
+
   private:
+    void find_forces(const System& system, const State& state, std::span<const double> tension_n);
+
     std::optional<ElasticForces> bends_;  ///< empty without bends
-    std::vector<double> fx_n_;            ///< scratch, one entry per particle
+    std::vector<double> fx_n_;            ///< on particles by bars and bends
     std::vector<double> fy_n_;
 };
 

@@ -1,0 +1,68 @@
+#include "corda/sim/support_work.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "corda/sim/moving_pins.hpp"
+
+namespace corda::sim {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Points and weights on -1 .. 1 of Gauss' rule: M. Abramowitz, I. A. Stegun, Handbook of Mathematical
+/// Functions, table 25.4.
+constexpr std::array<std::pair<double, double>, 4> kGauss{{{-0.861136311594053, 0.347854845137454},
+                                                           {-0.339981043584856, 0.652145154862546},
+                                                           {0.339981043584856, 0.652145154862546},
+                                                           {0.861136311594053, 0.347854845137454}}};
+
+/// Steps of high order are longer than the rule follows.
+constexpr double kPartsPerStep = 3.0;
+
+/// A sixteenth of the shortest cycle of the pins, and at most a common frame.
+double most_of_part_s(const System& system) {
+    constexpr double kFrame = 1.0 / 60.0;
+    double frequency_1_s = 0.0;
+    for (const MoveDef& move : system.moves)
+        frequency_1_s = std::max(frequency_1_s, displacement_of(move).frequency_1_s());
+    return std::min(kFrame, 0.125 * std::numbers::pi / frequency_1_s);
+}
+
+}  // namespace
+
+SupportWork::SupportWork(const System& system, const WorldDef& world, std::span<const MethodDef> methods,
+                         double frame_interval_s)
+    : run_(system, world, methods, frame_interval_s),
+      meter_(system),
+      longest_s_(most_of_part_s(system)),
+      most_s_(longest_s_) {
+    run_.set_outputs({.velocities = true, .tensions = true, .unknown_tensions = true});
+    const bool snaps = std::ranges::any_of(system.bodies, [](const Body& body) {
+        return body.material.is_string && body.material.compliance_1_n == 0.0;
+    });
+    if (snaps) work_j_ = kUnknown;
+}
+
+double SupportWork::until_j(double time_s) {
+    while (until_s_ < time_s) {
+        const double left_s = time_s - until_s_;
+        const double part_s = longest_s_ < left_s ? std::min(longest_s_, 0.5 * left_s) : left_s;
+        const std::uint64_t steps = run_.diagnostics().steps;
+        for (const auto& [point, weight] : kGauss) {
+            if (run_.advance_to(until_s_ + 0.5 * (1.0 + point) * part_s) == Status::kDiverged)
+                return work_j_ = std::numeric_limits<double>::infinity();
+            const State& state = run_.state();
+            work_j_ += 0.5 * weight * part_s * meter_.support_power_w(run_.system(), state, state.tension_n);
+        }
+        const auto taken = static_cast<double>(run_.diagnostics().steps - steps);
+        longest_s_ = std::min(part_s / std::max(0.5, kPartsPerStep * taken), most_s_);
+        until_s_ = part_s == left_s ? time_s : until_s_ + part_s;
+    }
+    return work_j_;
+}
+
+}  // namespace corda::sim
