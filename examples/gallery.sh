@@ -25,7 +25,9 @@ while read -r name command times more; do
 done <<'END'
 bars            still  2.0
 bridge          still  0.6
+child           still  22
 cloth           still  1.5
+crane           still  5
 double_pendulum still  5.3
 fifty_pendulums still  7.2 --set overlay.time=true
 first           strobe 0,0.1,0.2,0.3,0.4,0.5,0.6
