@@ -38,6 +38,11 @@ struct SeriesArrays {
         std::size_t changes = 0;
         std::array<Vec2, kMaxSeriesOrder + 1> term{};
     };
+    /// Of a link.
+    struct Direction {
+        Series c{};
+        Series s{};
+    };
     struct alignas(kSeriesLanes * sizeof(double)) Lanes {
         std::array<double, kSeriesLanes> lane{};
     };
@@ -53,8 +58,9 @@ struct SeriesArrays {
     Pull fall_m_s2;                        ///< the same if the start is not pinned
     double unit_s = 1.0;                   ///< unit of time: coefficient k belongs to (t / unit_s)^k
 
-    // Directions of the first and the last link; velocity and place of the centre of mass of a free chain.
-    Series first_c{}, first_s{}, last_c{}, last_s{}, vx{}, vy{}, x{}, y{};
+    Direction first_link{};
+    Direction last_link{};
+    Series vx{}, vy{}, x{}, y{};  ///< velocity and place of the centre of mass of a free chain
 
     std::vector<Lanes> rows;  ///< kRows series of order + 1 coefficients per block
     std::vector<Lanes> flat;  ///< holds the arrays from here on

@@ -105,15 +105,6 @@ CORDA_INLINE void start_series(SeriesArrays& a) {
     }
 }
 
-/// One step of an elimination: writes the fraction's q and the pivot times q, and passes the joint at a
-/// particle.
-CORDA_INLINE void pass(InverseMassFraction& fraction, double inverse_mass, double square_sine, double& q_here,
-                       double& divisor) {
-    q_here = fraction.q;
-    divisor = fraction.divisor(inverse_mass);
-    fraction.pass(inverse_mass, square_sine, divisor);
-}
-
 /// Factorises the matrix of the tensions into inverse pivots and weights.
 CORDA_INLINE void factorise(SeriesArrays& a) {
     double* const q = a.load;
@@ -122,13 +113,19 @@ CORDA_INLINE void factorise(SeriesArrays& a) {
     std::size_t low = 0;
     InverseMassFraction from_end{a.inverse_mass_1_kg[high]};
     InverseMassFraction from_start{a.first_inverse_mass_1_kg};
+    // Writes a link's q and pivot times q, and passes its joint.
+    const auto pass = [&](InverseMassFraction& fraction, std::size_t link, std::size_t joint) {
+        q[link] = fraction.q;
+        divisor[link] = fraction.divisor(a.inverse_mass_1_kg[joint]);
+        fraction.pass(a.inverse_mass_1_kg[joint], a.scratch[joint], divisor[link]);
+    };
     while (high > a.meeting || low < a.meeting) {
         if (high > a.meeting) {
-            pass(from_end, a.inverse_mass_1_kg[high - 1], a.scratch[high - 1], q[high], divisor[high]);
+            pass(from_end, high, high - 1);
             --high;
         }
         if (low < a.meeting) {
-            pass(from_start, a.inverse_mass_1_kg[low], a.scratch[low], q[low], divisor[low]);
+            pass(from_start, low, low);
             ++low;
         }
     }
@@ -241,8 +238,9 @@ CORDA_INLINE void in_last_lane(const SeriesArrays& a, double x, Four& result) {
 }
 
 /// Coefficient k of a pull along a link's direction.
-CORDA_INLINE double pull_along(const SeriesArrays::Pull& pull, const Series& c, const Series& s,
+CORDA_INLINE double pull_along(const SeriesArrays::Pull& pull, const SeriesArrays::Direction& direction,
                                std::size_t k) {
+    const auto& [c, s] = direction;
     double sum = pull.first.x * c[k] + pull.first.y * s[k];
     for (std::size_t j = 1; j <= std::min(k, pull.changes); ++j)
         sum += pull.term[j].x * c[k - j] + pull.term[j].y * s[k - j];
@@ -250,8 +248,9 @@ CORDA_INLINE double pull_along(const SeriesArrays::Pull& pull, const Series& c, 
 }
 
 /// The same to its left.
-CORDA_INLINE double pull_across(const SeriesArrays::Pull& pull, const Series& c, const Series& s,
+CORDA_INLINE double pull_across(const SeriesArrays::Pull& pull, const SeriesArrays::Direction& direction,
                                 std::size_t k) {
+    const auto& [c, s] = direction;
     double sum = pull.first.y * c[k] - pull.first.x * s[k];
     for (std::size_t j = 1; j <= std::min(k, pull.changes); ++j)
         sum += pull.term[j].y * c[k - j] - pull.term[j].x * s[k - j];
@@ -264,7 +263,7 @@ CORDA_INLINE double eliminate(SeriesArrays& a, std::size_t k) {
     double down = 0.0;
     double up = 0.0;
     Four lower_next{};  // load_next of the block below that of eliminate_up, or a pin's pull
-    lower_next[kLanes - 1] = pull_along(a.start_pull_m_s2, a.first_c, a.first_s, k);
+    lower_next[kLanes - 1] = pull_along(a.start_pull_m_s2, a.first_link, k);
     Known upper;
     for (std::size_t d = 0; d < a.blocks - half; ++d) {
         const std::size_t high = a.blocks - 1 - d;
@@ -272,7 +271,7 @@ CORDA_INLINE double eliminate(SeriesArrays& a, std::size_t k) {
         find_known(a, high, k, known);
         if (d == 0) {
             Four end_pull;
-            in_last_lane(a, pull_along(a.end_pull_m_s2, a.last_c, a.last_s, k), end_pull);
+            in_last_lane(a, pull_along(a.end_pull_m_s2, a.last_link, k), end_pull);
             known.load -= end_pull;
         } else {
             upper.complete(known.load_next);
@@ -341,9 +340,9 @@ CORDA_INLINE void substitute(SeriesArrays& a, std::size_t k, double share, doubl
 CORDA_INLINE void turn_links(SeriesArrays& a, std::size_t k, double share) {
     const std::size_t last = a.links - 1;
     Four first_pull{};
-    first_pull[0] = share * a.inverse_length_1_m[0] * pull_across(a.start_pull_m_s2, a.first_c, a.first_s, k);
+    first_pull[0] = share * a.inverse_length_1_m[0] * pull_across(a.start_pull_m_s2, a.first_link, k);
     Four last_pull;
-    in_last_lane(a, share * a.inverse_length_1_m[last] * pull_across(a.end_pull_m_s2, a.last_c, a.last_s, k),
+    in_last_lane(a, share * a.inverse_length_1_m[last] * pull_across(a.end_pull_m_s2, a.last_link, k),
                  last_pull);
     Four across_before{};  // across_next of the block before
     Four omega_before{};
@@ -377,8 +376,9 @@ CORDA_INLINE void turn_links(SeriesArrays& a, std::size_t k, double share) {
 }
 
 /// Coefficient k + 1 of a link's direction.
-CORDA_INLINE void turn_direction(SeriesArrays& a, std::size_t link, std::size_t k, double share, Series& c,
-                                 Series& s) {
+CORDA_INLINE void turn_direction(SeriesArrays& a, std::size_t link, std::size_t k, double share,
+                                 SeriesArrays::Direction& direction) {
+    auto& [c, s] = direction;
     const double* omega = a.row(link / kLanes, Row::kOmega, 0) + link % kLanes;
     double to_c = 0.0;
     double to_s = 0.0;
@@ -407,17 +407,17 @@ CORDA_INLINE void expand(SeriesArrays& a, const double* c, const double* s, cons
     start_series(a);
     factorise(a);
     const std::size_t last = a.links - 1;
-    a.first_c[0] = a.c[0];
-    a.first_s[0] = a.s[0];
-    a.last_c[0] = a.c[last];
-    a.last_s[0] = a.s[last];
+    a.first_link.c[0] = a.c[0];
+    a.first_link.s[0] = a.s[0];
+    a.last_link.c[0] = a.c[last];
+    a.last_link.s[0] = a.s[last];
     for (std::size_t k = 0; k < a.order; ++k) {
         const double share = a.unit_s / static_cast<double>(k + 1);
         substitute(a, k, share, eliminate(a, k));
         turn_links(a, k, share);
         if (k + 1 < a.order) {
-            turn_direction(a, 0, k, share, a.first_c, a.first_s);
-            turn_direction(a, last, k, share, a.last_c, a.last_s);
+            turn_direction(a, 0, k, share, a.first_link);
+            turn_direction(a, last, k, share, a.last_link);
         }
         if (a.first_inverse_mass_1_kg > 0.0) move_center(a, k, share);
     }
