@@ -144,7 +144,9 @@ def vary(values):
     (vary(f"{{ uniform = [1, {HUGE}] }}"), ':5:18: vary."rope[0].mass": ', "uniform is [least, largest]"),
     (LISTS + '"rope[0].mas" = [1]\n', ':9:1: vary."rope[0].mas": ', 'did you mean "mass"'),
     (f"# \u2028 \x85\n{vary('1.0')}", ':6:18: vary."rope[0].mass": ', "1 is a number with a fraction"),
-    (vary("{ }"), ':5:18: vary."rope[0].mass": ', "no distribution; give uniform, log_uniform, normal, integer"),
+    (vary("{ }"), ':5:18: vary."rope[0].mass": ', "no distribution; give uniform, log_uniform, normal, integer, range"),
+    (vary("{ range = [1, 2, 0.1], min = 1 }"), ':5:18: vary."rope[0].mass": ', "a range and a distribution; give one"),
+    (vary("{ range = [0, 1, 1e-6] }"), ':5:18: vary."rope[0].mass": ', "range has more than 1000000 numbers; give a larger step"),
     (vary("{ unifrom = [1, 2] }"), ':5:20: vary."rope[0].mass".unifrom: ', 'unknown key "unifrom"; did you mean "uniform"?'),
     (vary("{ uniform = [1, 2], normal = [1, 2] }"), ':5:18: vary."rope[0].mass": ', "two distributions; give one"),
     (vary("{ uniform = [1, 2], min = 1 }"), ':5:44: vary."rope[0].mass": ', "min bounds a normal distribution only; leave it out"),
@@ -172,6 +174,7 @@ def test_an_error_has_its_place_and_a_remedy(load, text, place, part):
 UNIFORM = "uniform is [least, largest], two numbers, the smaller first, or two vectors of one length"
 LOG_UNIFORM = "log_uniform is [least, largest], two positive numbers"
 NORMAL = "normal is [mean, standard deviation], the second positive"
+RANGE = "range is [first, last, step], three numbers"
 INTEGER = "integer is [least, largest], two whole numbers, both included"
 
 
@@ -181,11 +184,28 @@ INTEGER = "integer is [least, largest], two whole numbers, both included"
         "[-1e308, 1e308]", "[true, 2]")),
     *((f"log_uniform = {ends}", LOG_UNIFORM) for ends in ("[0, 1]", "[-1, 1]", "[2, 1]", "[1e-320, 1]", "[1e-300, 1e300]")),
     *((f"normal = {ends}", NORMAL) for ends in ("[1, 0]", "[1, -1]")),
+    *((f"range = {ends}", RANGE) for ends in (
+        "3", "[1, 2]", "[1, 2, 0]", "[1, 2, -1]", "[2, 1, 1]", '[1, 2, "1"]', "[[1], [2], [3]]", "[1, inf, 1]", "[-1e308, 1e308, 1e-5]")),
     *((f"integer = {ends}", INTEGER) for ends in ("[1.5, 2]", "[2, 1]", "[0, 9007199254740992]")),
 ])
 def test_distributions_have_sound_ends(load, values, part):
     message = failure_of(load, vary("{ " + values + " }"))
     assert message.startswith(load.path + ':5:18: vary."rope[0].mass": ') and part in message
+
+
+@pytest.mark.parametrize("text, values", [
+    ("[5, 170, 5]", list(range(5, 171, 5))),
+    ("[3, 1, -1]", [3, 2, 1]),
+    ("[0.1, 0.7, 0.2]", [0.1, 0.3, 0.5, 0.7]),
+    ("[0.0, 1.0, 0.3]", [0.0, 0.3, 0.6, 0.9]),
+    ("[0.2, -0.2, -0.1]", [0.2, 0.1, 0.0, -0.1, -0.2]),
+    ("[1, 2, 0.5]", [1.0, 1.5, 2.0]),
+    ("[2, 2, 1]", [2]),
+])
+def test_a_range_is_a_list(load, text, values):
+    loaded = load("grid = true\n[vary]\n" + '"rope[0].mass" = { range = ' + text + " }\n")
+    assert loaded.samples == len(values)
+    assert [repr(value) for value in loaded.vary["rope[0].mass"]] == [repr(value) for value in values]
 
 
 def test_ends_may_be_equal_and_shares_inexact(load):

@@ -21,6 +21,7 @@ SUMMARY = ("period_s", "angle_max_deg", "tension_max_n", "speed_max_m_s", "strai
            "error_estimate_px", "horizon_s")
 _MAX_FILE_BYTES = 16 << 20
 _MAX_COMPONENTS = 1 << 16
+_MAX_RANGE = 1_000_000
 _LEAST_NORMAL = sys.float_info.min
 
 #: By distribution: a test of its two numbers, and their description in messages.
@@ -323,19 +324,41 @@ class _Reader:
                 if not value:
                     self._fail(("vary", key), "an empty list; give values to choose from")
                 self._sweep.vary[key] = value
+            elif isinstance(value, dict) and "range" in value:
+                self._read_range(key, value)
             elif isinstance(value, dict):
                 self._read_distribution(key, value)
             else:
                 self._fail(("vary", key), f"{_described(value)}; give a list of values, or a distribution such as "
                            "{ uniform = [1.0, 2.0] }")
 
+    def _read_range(self, key, table):
+        """The list of the numbers from the first to the last."""
+        path = ("vary", key)
+        if len(table) > 1:
+            self._fail(path, "a range and a distribution; give one")
+            return
+        ends = table["range"]
+        numbers = _numbers(ends, True) if isinstance(ends, list) and len(ends) == 3 else None
+        first, last, step = numbers or (0.0, 0.0, 0.0)
+        if step == 0.0 or not 0.0 <= (last - first) / step < math.inf:
+            self._fail(path, "range is [first, last, step], three numbers; the step leads from the first to the last")
+            return
+        if (last - first) / step >= _MAX_RANGE:
+            self._fail(path, f"range has more than {_MAX_RANGE} numbers; give a larger step")
+            return
+        count = 1 + math.floor((last - first) / step * (1.0 + 1e-12))
+        if all(isinstance(end, int) for end in ends):
+            first, step = ends[0], ends[2]
+        self._sweep.vary[key] = [_shortened(first + k * step) for k in range(count)]
+
     def _read_distribution(self, key, table):
         path = ("vary", key)
-        self._refuse_others(path, table, (*_SHAPES, "min", "max"))
+        self._refuse_others(path, table, (*_SHAPES, "range", "min", "max"))
         shapes = [shape for shape in _SHAPES if shape in table]
         if not shapes:
             if all(name in ("min", "max") for name in table):
-                self._fail(path, f"no distribution; give {', '.join(_SHAPES)}")
+                self._fail(path, f"no distribution; give {', '.join(_SHAPES)}, range")
             return
         if len(shapes) > 1:
             self._fail(path, "two distributions; give one")
@@ -406,6 +429,11 @@ class _Reader:
         if len(sound) == len(split) and not abs(total - 1.0) < 1e-9:
             self._fail(("split",), f"the shares have the sum {total:.6g}; give shares with the sum 1")
         self._sweep.splits = sound
+
+
+def _shortened(value):
+    """A sum of rounded decimals as a reader expects it: 12 significant digits."""
+    return value if isinstance(value, int) else float(f"{value:.11e}") + 0.0
 
 
 def _numbers(value, is_vector):
