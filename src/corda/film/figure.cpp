@@ -249,7 +249,7 @@ std::string vector_bytes(const std::string& ending, const Film& film, const Figu
 }  // namespace
 
 FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns) {
-    VideoDef& video = scene.video;
+    const VideoDef& video = scene.video;
     const int count = static_cast<int>(std::max<std::size_t>(times_s.size(), 1));
     const int asked = columns;
     if (columns == 0) columns = best_columns(video.width_px, video.height_px, count);
@@ -264,8 +264,7 @@ FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns) 
             kMinCellPx, most);
     }
     scene.overlay.time = false;  // it is written below the cell
-    video.width_px = sheet.cell_width_px();
-    video.height_px = sheet.cell_height_px();
+    scene = scaled_to(std::move(scene), sheet.cell_width_px(), sheet.cell_height_px());
     return def;
 }
 

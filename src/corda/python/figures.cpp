@@ -82,11 +82,9 @@ std::vector<std::string> curve_colors(const Scene& scene, std::size_t count) {
 /// The look of a scene in print: its shape, a width in millimetres at kPrintPpi, letters of that size and no
 /// live plot. What the scene says in pixels keeps its share of the width.
 Scene look_in_print(const Scene& scene, double width_mm, double letter_pt) {
-    // Limits of height over width, so that a picture fits a page, and of widths in a scene.
+    // Limits of height over width, so that a picture fits a page.
     constexpr double kFlattest = 0.2;
     constexpr double kTallest = 1.4;
-    constexpr double kThinnestPx = 0.1;
-    constexpr double kThickestPx = 1000.0;
     Scene look = scene;
     look.style = style_in_print(scene);
     VideoDef& video = look.video;
@@ -94,17 +92,7 @@ Scene look_in_print(const Scene& scene, double width_mm, double letter_pt) {
     const double factor = kPrintPpi * width_mm / kMmPerInch / video.width_px;
     video.width_px = static_cast<int>(std::lround(video.width_px * factor));
     video.height_px = static_cast<int>(std::lround(shape * video.width_px));
-    const auto scale = [&](std::optional<double>& width_px) {
-        if (width_px) width_px = std::clamp(*width_px * factor, kThinnestPx, kThickestPx);
-    };
-    StyleDef& style = look.style;
-    for (auto* width_px :
-         {&style.rope_width_px, &style.net_width_px, &style.marker_radius_px, &style.bar_width_px})
-        scale(*width_px);
-    for (BodyStyleDef& body : look.body_styles) {
-        scale(body.width_px);
-        scale(body.end_width_px);
-    }
+    scale_px(look, factor);
     look.overlay.plots.clear();
     look.overlay.text_px = letter_pt / kPointsPerInch * kPrintPpi;
     return look;

@@ -173,6 +173,14 @@ struct PlacedSettings {
 /// on from the labelled one before them, as in "8 kg 2".
 [[nodiscard]] System named_in_files(const Scene& scene, System system);
 
+/// What a scene says in pixels, times `factor`, within the ranges of the keys. Keys that have their defaults
+/// keep them; video.size and golden.size stay.
+void scale_px(Scene& scene, double factor);
+
+/// The scene in pictures of another size, in which what it says in pixels keeps its share of the shorter
+/// side.
+[[nodiscard]] Scene scaled_to(Scene scene, int width_px, int height_px);
+
 /// Checks definitions filled in by code against the types, ranges and words of the keys of a scene file.
 /// build_system() checks ropes and nets. Throws corda::Error (kInvalidScene), which names each bad key.
 void check_definitions(const Scene& scene);
