@@ -70,8 +70,17 @@ def main():
             check(not filecmp.dircmp(kept, before).diff_files, "something was written before Apply")
             chosen = browser.run("pictures.filter((picture) => stateOf(picture) === 'accept').map((picture) => picture.name)")
             check(len(chosen) == 2, f"chosen are {chosen}")
+            # A page that is loaded again has the marks.
+            browser.run("pictures = null")
+            browser.open(address)
+            browser.wait("document.readyState === 'complete' && typeof pictures === 'object' && pictures !== null && pictures.length === 6")
+            again = browser.run("pictures.filter((picture) => stateOf(picture) === 'accept').map((picture) => picture.name)")
+            check(again == chosen, f"after a reload {again} are chosen")
+            check(browser.run("pictures.filter((picture) => stateOf(picture) === 'reject').length") == 1, "a rejected one is open again")
+            browser.run("byId('end').click()")
+            browser.wait("byId('outcome').textContent.startsWith('2 accepted pictures are not written')")
             if options.figures:
-                for name, width, height, mobile in (("desktop", 1280, 860, False), ("phone", 390, 844, True)):
+                for name, width, height, mobile in (("desktop", 1440, 900, False), ("phone", 390, 844, True)):
                     browser.resize(width, height, 1, mobile)
                     for scheme in ("light", "dark"):
                         browser.use_scheme(scheme)
@@ -83,6 +92,8 @@ def main():
             browser.run("byId('end').click()")
             browser.wait("byId('status').textContent === 'the review has ended'")
         check(program.wait(timeout=20) == 7, "pictures that were not accepted are no failure")
+        last = program.stdout.read().splitlines()[-1]
+        check(last == f"review: 2 pictures written to '{kept}', 4 not accepted", f"the terminal says: {last}")
         rest = subprocess.run(suite, check=False, stdout=subprocess.PIPE, text=True)
         check(rest.returncode == 7 and "6 pictures: 2 passed, 4 failed" in rest.stdout, rest.stdout)
 

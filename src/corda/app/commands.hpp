@@ -17,6 +17,7 @@
 #include "corda/film/film.hpp"
 #include "corda/film/provenance.hpp"
 #include "corda/scene/scene.hpp"
+#include "corda/serve/server.hpp"
 
 namespace corda::app {
 
@@ -93,6 +94,10 @@ void add_size(CLI::App& command, SceneOptions& scene);
 void add_timing(CLI::App& command, SceneOptions& scene, const std::string& rate = "frames per second");
 /// Which OpenGL to draw with.
 void add_gl(CLI::App& command, FilmDef& film);
+/// `--port`, `--bind`, `--host` and `--token`; returns these options.
+std::vector<CLI::Option*> add_server(CLI::App& command, serve::ServerDef& server);
+/// Prints where the page is: the address as the result, those by other names as information.
+void tell_address(const Console& console, const serve::Server& server);
 /// `--fail-empty`.
 void add_fail_empty(CLI::App& command, bool& fails);
 

@@ -32,6 +32,7 @@ struct GoldenOptions {
     std::string html;
     std::string markdown;
     bool reviews = false;
+    serve::ServerDef server;
 };
 
 /// A page of more pictures is too large to open.
@@ -137,17 +138,25 @@ void check_options(const GoldenOptions& options) {
     check_folder(def.new_folder);
 }
 
-/// Shows failed pictures on a page of this machine until it is closed there. Returns the number of those that
-/// were not accepted.
-std::size_t review(const Console& console, const golden::SuiteDef& def, const golden::SuiteResult& result) {
+/// Shows failed pictures on a page until it is closed there, and says what was written. Returns the number of
+/// those that were not accepted.
+std::size_t review(const Console& console, const GoldenOptions& options, const golden::SuiteResult& result) {
     constexpr int kWaitMs = 200;
-    serve::Review review(def, result);
-    const serve::Server server({},
-                               [&review](const serve::Request& request) { return review.answer(request); });
-    console.result(server.address());
+    serve::Review review(options.def, result);
+    std::optional<serve::Server> server(
+        std::in_place, options.server,
+        [&review](const serve::Request& request) { return review.answer(request); });
+    tell_address(console, *server);
+    if (console.json()) console.info(server->address());  // the result is the suite's
     console.info("open this address in a browser; Finish on the page or Ctrl-C here ends the review");
-    while (!review.wait(kWaitMs)) stop_if_asked();
-    return review.open_count();
+    while (!review.wait(kWaitMs) && interruption() == ExitCode::kOk) continue;
+    server.reset();  // waits for what it is writing
+    const std::size_t written = review.accepted_count();
+    const std::size_t open = review.open_count();
+    console.result(fmt::format("review: {} written to '{}', {} not accepted",
+                               counted(static_cast<std::int64_t>(written), "picture"), options.def.folder,
+                               open));
+    return open;
 }
 
 ExitCode run_suite(const Console& console, GoldenOptions options) {
@@ -166,7 +175,10 @@ ExitCode run_suite(const Console& console, GoldenOptions options) {
     tell(console, options, result);
     if (result.count(Verdict::kInvalid) > 0) return ExitCode::kInvalidScene;
     bool failed = std::ranges::any_of(result.pictures, &Checked::failed);
-    if (failed && options.reviews) failed = review(console, options.def, result) > 0;
+    if (failed && options.reviews) {
+        failed = review(console, options, result) > 0;
+        if (interruption() != ExitCode::kOk) return interruption();
+    }
     return failed ? ExitCode::kMismatch : ExitCode::kOk;
 }
 
@@ -203,8 +215,9 @@ void add_golden(CLI::App& app, Action& action) {
     auto* const review =
         command
             .add_flag("--review", options.reviews,
-                      "show failed pictures on a page at 127.0.0.1, to accept or reject each")
+                      "show failed pictures on a page in a browser, to accept or reject each")
             ->excludes(update, stale);
+    for (CLI::Option* const option : add_server(command, options.server)) option->needs(review);
     command
         .add_option("--accept", options.def.accepted,
                     "draw nothing: keep the pictures that an earlier --new wrote to this folder")

@@ -156,6 +156,33 @@ void add_gl(CLI::App& command, FilmDef& film) {
     command.add_flag("--require-gpu", film.require_gpu, "refuse to draw on the CPU (exit 4)");
 }
 
+std::vector<CLI::Option*> add_server(CLI::App& command, serve::ServerDef& server) {
+    auto* const port =
+        command.add_option("--port", server.port, "port of the page; 0: any that is free; its address stays")
+            ->check(within(0, 65535));
+    auto* const bind = command
+                           .add_option("--bind", server.bind,
+                                       "address that the page is served at: 127.0.0.1, this machine alone; "
+                                       "0.0.0.0 or ::, all of its networks")
+                           ->type_name("ADDRESS");
+    auto* const host =
+        command
+            .add_option("--host", server.hosts,
+                        "a name other than localhost by which browsers reach the page, or a page that shows "
+                        "it in a frame, such as a notebook's")
+            ->type_name("NAME");
+    auto* const token =
+        command.add_option("--token", server.token, "the secret in the address, in place of a random one")
+            ->type_name("TEXT");
+    return {port, bind, host, token};
+}
+
+void tell_address(const Console& console, const serve::Server& server) {
+    console.result(server.address());
+    for (const std::string& address : server.other_addresses())
+        console.info("from other machines: " + address);
+}
+
 void add_fail_empty(CLI::App& command, bool& fails) {
     command.add_flag("--fail-empty", fails, "exit 7 if nothing is in view in a picture");
 }

@@ -31,6 +31,8 @@ Response Review::answer(const Request& request) {
                 if (name.is_string()) names.push_back(name);
             return apply(names);
         }
+        if (request.path == "mark" && body.is_object() && body.value("marks", Json()).is_object())
+            return mark(body["marks"]);
         if (request.path != "end") return text_response(400, "no such request\n");
         {
             const std::lock_guard lock(mutex_);
@@ -51,6 +53,8 @@ Response Review::answer(const Request& request) {
             json["has_reference"] = !picture.reference.empty();
             json["has_new"] = !picture.drawn_path.empty();
             json["accepted"] = accepted_.contains(picture.name);
+            const auto mark = marks_.find(picture.name);
+            json["mark"] = mark == marks_.end() ? "" : mark->second;
             all.push_back(std::move(json));
         }
         return {200, "application/json", all.dump(-1, ' ', false, Json::error_handler_t::replace)};
@@ -79,6 +83,16 @@ Response Review::picture(std::string_view path) const {
     return none();
 }
 
+Response Review::mark(const Json& marks) {
+    const std::lock_guard lock(mutex_);
+    for (const Checked& picture : pictures_) {
+        const auto mark = marks.find(picture.name);
+        if (mark == marks.end() || !(*mark == "accept" || *mark == "reject" || *mark == "")) continue;
+        marks_[picture.name] = *mark;
+    }
+    return {};
+}
+
 Response Review::apply(const std::vector<std::string>& names) {
     const std::lock_guard lock(mutex_);
     golden::SuiteDef def = def_;
@@ -104,6 +118,11 @@ bool Review::wait(int timeout_ms) {
 std::size_t Review::open_count() const {
     const std::lock_guard lock(mutex_);
     return pictures_.size() - accepted_.size();
+}
+
+std::size_t Review::accepted_count() const {
+    const std::lock_guard lock(mutex_);
+    return accepted_.size();
 }
 
 }  // namespace corda::serve

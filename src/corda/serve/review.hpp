@@ -1,10 +1,13 @@
 #pragma once
 
 #include <condition_variable>
+#include <map>
 #include <mutex>
 #include <set>
 #include <string>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "corda/golden/suite.hpp"
 #include "corda/serve/server.hpp"
@@ -22,6 +25,8 @@ class Review {
     ///   "", "style.css", "review.js"      the page
     ///   "pictures"                        JSON: the pictures to decide on, with cause and group
     ///   "picture/I/KIND.png"              of picture I: reference, new or difference
+    ///   POST "mark" {"marks": {name: M}}  what is to become of pictures: "accept", "reject" or ""; it is kept
+    ///                                     for pages that are opened again
     ///   POST "apply" {"accept": [names]}  keeps these pictures as golden::accept() does
     ///   POST "end"                        ends wait()
     [[nodiscard]] Response answer(const Request& request);
@@ -31,9 +36,11 @@ class Review {
 
     /// The number of pictures that were not accepted.
     [[nodiscard]] std::size_t open_count() const;
+    [[nodiscard]] std::size_t accepted_count() const;
 
   private:
     [[nodiscard]] Response picture(std::string_view path) const;
+    [[nodiscard]] Response mark(const nlohmann::json& marks);
     [[nodiscard]] Response apply(const std::vector<std::string>& names);
 
     golden::SuiteDef def_;
@@ -41,6 +48,7 @@ class Review {
     mutable std::mutex mutex_;
     std::condition_variable ended_;
     std::set<std::string> accepted_;
+    std::map<std::string, std::string> marks_;  ///< of pictures by their names
     bool has_ended_ = false;
 };
 

@@ -7,7 +7,6 @@ let pictures = [];
 let at = 0;                 // index of the picture that is shown
 let view = 0;               // index in views
 let blinking = 0;           // timer
-const choices = new Map();  // name -> "accept" or "reject"
 
 function make(tag, attributes = {}, ...children) {
     const element = document.createElement(tag);
@@ -17,7 +16,14 @@ function make(tag, attributes = {}, ...children) {
 }
 
 const post = (path, body = {}) => fetch(path, {method: "POST", body: JSON.stringify(body)});
-const stateOf = (picture) => picture.accepted ? "written" : choices.get(picture.name) || "open";
+const stateOf = (picture) => picture.accepted ? "written" : picture.mark || "open";
+
+/// The server keeps marks, so that a page that is opened again has them.
+function mark(marked, choice) {
+    for (const picture of marked) picture.mark = choice;
+    post("mark", {marks: Object.fromEntries(marked.map((picture) => [picture.name, choice]))})
+        .catch(() => { byId("outcome").textContent = "the program has ended; this mark is not kept"; });
+}
 
 // ---------------------------------------------------------------- the list
 
@@ -101,19 +107,18 @@ function show(i) {
 function choose(choice) {
     const picture = pictures[at];
     if (picture.accepted || (choice === "accept" && !picture.has_new)) return;
-    if (choices.get(picture.name) === choice) choices.delete(picture.name);
-    else choices.set(picture.name, choice);
-    show(at + (choices.has(picture.name) && at + 1 < pictures.length ? 1 : 0));
+    mark([picture], picture.mark === choice ? "" : choice);
+    show(at + (picture.mark && at + 1 < pictures.length ? 1 : 0));
 }
 
 function chooseAll() {
     const {group} = pictures[at];
-    for (const picture of pictures)
-        if (picture.group === group && picture.has_new && !picture.accepted) choices.set(picture.name, "accept");
+    mark(pictures.filter((picture) => picture.group === group && picture.has_new && !picture.accepted), "accept");
     showList();
 }
 
 async function apply() {
+    delete byId("end").dataset.asked;
     const accept = pictures.filter((picture) => stateOf(picture) === "accept").map((picture) => picture.name);
     byId("apply").disabled = true;
     const response = await post("apply", {accept});
@@ -123,6 +128,12 @@ async function apply() {
 }
 
 async function end() {
+    const marked = pictures.filter((picture) => stateOf(picture) === "accept").length;
+    if (marked > 0 && !byId("end").dataset.asked) {
+        byId("end").dataset.asked = "yes";
+        byId("outcome").textContent = `${marked} accepted ${marked === 1 ? "picture is" : "pictures are"} not written: Apply writes, Finish ends without`;
+        return;
+    }
     await post("end").catch(() => {});  // the program may end before it has answered
     byId("status").textContent = "the review has ended";
     for (const button of document.querySelectorAll("button")) button.disabled = true;
@@ -134,6 +145,7 @@ byId("accept-all").addEventListener("click", chooseAll);
 byId("apply").addEventListener("click", apply);
 byId("end").addEventListener("click", end);
 byId("mix").addEventListener("input", mix);
+byId("mix").addEventListener("pointerup", () => byId("mix").blur());  // so that keys go to the page again
 document.addEventListener("keydown", (event) => {
     if (pictures.length === 0 || event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input")) return;
     const actions = {

@@ -6,11 +6,14 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
+#include "support/command.hpp"
 #include "support/failure.hpp"
 
 namespace corda::serve {
@@ -70,7 +73,7 @@ class ServerTest : public testing::Test {
         return ask("GET " + base_ + path + " HTTP/1.1\r\n" + headers);
     }
 
-    const Server server_{{0, {"hub.example.org"}}, &answer};
+    const Server server_{{.hosts = {"hub.example.org"}}, &answer};
     const std::string base_ = server_.address().substr(server_.address().find('/', 8));
 };
 
@@ -137,10 +140,60 @@ TEST_F(ServerTest, OutlivesAnythingThatIsThrown) {
     EXPECT_THAT(get("after"), HasSubstr("200 OK"));
 }
 
+/// A page that is open finds the next program at its address.
+TEST_F(ServerTest, KeepsTheTokenOfAPort) {
+    const test::ScratchFolder folder;
+    ::setenv("XDG_RUNTIME_DIR", folder.path().c_str(), 1);
+    const std::uint16_t port = port_of(server_);
+    const std::string token = token_of_port(port);
+    EXPECT_TRUE(is_token(token));
+    EXPECT_EQ(token_of_port(port), token);
+    EXPECT_NE(token_of_port(0), token_of_port(0));
+    EXPECT_NE(token_of_port(static_cast<std::uint16_t>(port ^ 1U)), token);
+    const std::string path = folder.path() + "/" + folder.files().front();
+    EXPECT_EQ(std::filesystem::status(path).permissions(),
+              std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+    // Another user may have read or written what others can.
+    for (const std::string& file : folder.files())
+        std::filesystem::permissions(folder.path() + "/" + file, std::filesystem::perms::others_read,
+                                     std::filesystem::perm_options::add);
+    EXPECT_NE(token_of_port(port), token);
+    ::unsetenv("XDG_RUNTIME_DIR");
+}
+
+TEST_F(ServerTest, HasTheTokenThatIsGiven) {
+    const Server given({.token = "a-token_of_20_letters"}, &answer);
+    EXPECT_THAT(given.address(), testing::EndsWith("/a-token_of_20_letters/"));
+    for (const char* const token : {"short", "a token of 20 letters", "a/token/of/20/letters"})
+        EXPECT_EQ(test::code_of([&] { const Server none({.token = token}, &answer); }), ExitCode::kUsage);
+}
+
+TEST_F(ServerTest, ListensWhereItIsTold) {
+    const Server all({.hosts = {"Box.example:8443", "10.0.0.2"}, .bind = "0.0.0.0"}, &answer);
+    EXPECT_THAT(all.address(), StartsWith("http://127.0.0.1:"));
+    const std::string end = all.address().substr(std::string("http://127.0.0.1").size());
+    EXPECT_THAT(all.other_addresses(),
+                testing::ElementsAre("http://box.example" + end, "http://10.0.0.2" + end));
+    const Server v6({.bind = "::1"}, &answer);
+    EXPECT_THAT(v6.address(), StartsWith("http://[::1]:"));
+    const Server other({.hosts = {"box.example"}, .bind = "127.0.0.2"}, &answer);
+    EXPECT_THAT(other.address(), StartsWith("http://127.0.0.2:"));
+    EXPECT_THAT(other.other_addresses(), testing::IsEmpty());  // nobody else reaches it
+    for (const char* const bind : {"localhost", "1.2.3", "", "0.0.0.0:80"})
+        EXPECT_EQ(test::code_of([&] { const Server none({.bind = bind}, &answer); }), ExitCode::kUsage);
+    for (const char* const host : {"", "a b", "http://a", "a;script-src *", "*.example"})
+        EXPECT_EQ(test::code_of([&] { const Server none({.hosts = {host}}, &answer); }), ExitCode::kUsage)
+            << host;
+}
+
+TEST_F(ServerTest, IsShownInFramesOfItsHosts) {
+    EXPECT_THAT(get(""),
+                HasSubstr("frame-ancestors 'self' http://hub.example.org:* https://hub.example.org:*\r\n"));
+}
+
 TEST_F(ServerTest, NamesAPortThatIsTaken) {
-    const test::Failure failure = test::failure_of([&] {
-        const Server other({port_of(server_), {}}, &answer);
-    });
+    const test::Failure failure =
+        test::failure_of([&] { const Server other({.port = port_of(server_)}, &answer); });
     EXPECT_EQ(failure.code, ExitCode::kIo);
     EXPECT_THAT(failure.message, HasSubstr("Address already in use; give another --port"));
 }
