@@ -64,9 +64,10 @@ class Collector {
         if ((key->type.kind != Kind::kNumber && !is_integer) || is_index) return;
         const double value = scene::number_of(node);
         if (!std::isfinite(value)) return;
-        found_.push_back({{path, value, is_integer, key->type.range.low, key->type.range.high,
-                           std::string(key->unit), std::string(key->meaning), node.source().begin.line},
-                          node.source()});
+        found_.push_back(
+            {{path, value, is_integer, key->type.range.low, key->type.range.high, key->type.range.low_open,
+              std::string(key->unit), std::string(key->meaning), node.source().begin.line},
+             node.source()});
     }
 
     std::vector<Found> found_;
@@ -76,14 +77,24 @@ std::string text_of(double value, bool is_integer) {
     return is_integer ? fmt::format("{:.0f}", value) : scene::number_text(value);
 }
 
-/// The offset of a place in a text; columns count characters.
+/// The offset of a place in a text; columns count characters, a byte order mark not.
 std::size_t offset_of(std::string_view text, toml::source_position place) {
-    std::size_t offset = 0;
+    constexpr std::string_view kMark = "\xef\xbb\xbf";
+    std::size_t offset = place.line == 1 && text.starts_with(kMark) ? kMark.size() : 0;
     for (std::size_t line = 1; line < place.line; ++line) offset = text.find('\n', offset) + 1;
     for (std::size_t column = 1; column < place.column; ++column) do
             ++offset;
         while (offset < text.size() && is_continuation(text[offset]));
     return offset;
+}
+
+/// Whether a text is a document with the same values.
+bool says(const std::string& text, const toml::table& expected) {
+    try {
+        return scene::parse_document(text, "") == expected;
+    } catch (const Error&) {
+        return false;
+    }
 }
 
 }  // namespace
@@ -116,11 +127,13 @@ bool sets(const Setting& setting, const std::string& key) {
            std::equal(outer->begin(), outer->end(), inner->begin());
 }
 
-std::string with_changes(std::string text, const std::string& name, const NumberChanges& changes) {
+std::string with_changes(const std::string& before, const std::string& name, const NumberChanges& changes) {
+    std::string text = before;
     std::vector<Found> all = Collector().collect(scene::parse_document(text, name));
     for (const auto& change : changes)
         if (std::ranges::none_of(all, [&](const Found& found) { return found.number.key == change.first; }))
             throw_usage("{} has no number {} any more", name, printable(change.first));
+    toml::table expected = scene::parse_document(text, name);
     std::ranges::reverse(all);  // so that a change does not move the places of the others
     for (const auto& [number, region] : all) {
         const auto change = changes.find(number.key);
@@ -131,7 +144,13 @@ std::string with_changes(std::string text, const std::string& name, const Number
         const bool had_point = text.substr(begin, end - begin).find('.') != std::string::npos;
         if (had_point && changed.find_first_of(".e") == std::string::npos) changed += ".0";
         text.replace(begin, end - begin, changed);
+        scene::Problems none(name);
+        scene::apply_setting(expected, fmt::format("{}={}", number.key, changed), none);
     }
+    if (!says(text, expected))
+        throw_usage(
+            "the numbers cannot be written to {} without a change of something else; change them there",
+            name);
     return text;
 }
 

@@ -16,6 +16,7 @@ struct SceneNumber {
     bool is_integer = false;  ///< the key takes integers only
     double low = 0.0;         ///< its range
     double high = 0.0;
+    bool low_open = false;  ///< `low` itself is not allowed
     std::string unit;
     std::string meaning;
     std::size_t line = 0;  ///< in the file, from 1
@@ -37,9 +38,10 @@ using NumberChanges = std::map<std::string, double>;
 [[nodiscard]] std::vector<Setting> settings_of(const NumberChanges& changes,
                                                const std::vector<SceneNumber>& numbers);
 
-/// A scene file with other numbers in the place of its own; all else keeps its bytes. Throws corda::Error
-/// (kUsage) for a key that is not among numbers_of().
-[[nodiscard]] std::string with_changes(std::string text, const std::string& name,
+/// A scene file with other numbers in the place of its own; all else keeps its bytes, and the text that is
+/// returned has been read again and says these numbers. Throws corda::Error (kUsage) for a key that is not
+/// among numbers_of(), and if the text would say anything else.
+[[nodiscard]] std::string with_changes(const std::string& before, const std::string& name,
                                        const NumberChanges& changes);
 
 }  // namespace corda::serve

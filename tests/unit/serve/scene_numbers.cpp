@@ -87,5 +87,18 @@ TEST(SceneNumbers, WritingKeepsAllOtherBytes) {
               ExitCode::kUsage);
 }
 
+TEST(SceneNumbers, WritingKeepsMarksAndLineEnds) {
+    const std::string mark = "\xef\xbb\xbf";
+    EXPECT_EQ(with_changes(mark + "world.duration = 1.5\nschema = 1\n", "a.toml", {{"world.duration", 2.0}}),
+              mark + "world.duration = 2.0\nschema = 1\n");
+    EXPECT_EQ(
+        with_changes(mark + "# \u00e9\u20ac\U0001f600\r\n\"world\" . 'duration' = +1_0.5\r\nschema = 1\r\n",
+                     "a.toml", {{"world.duration", 2.0}}),
+        mark + "# \u00e9\u20ac\U0001f600\r\n\"world\" . 'duration' = 2.0\r\nschema = 1\r\n");
+    EXPECT_EQ(
+        with_changes("world={title=\"\U0001f600\U0001f600\",drag=1.0}", "a.toml", {{"world.drag", 2.0}}),
+        "world={title=\"\U0001f600\U0001f600\",drag=2.0}");
+}
+
 }  // namespace
 }  // namespace corda::serve
