@@ -7,8 +7,10 @@ Usage: watch.py CORDA [--saves N] [--figures FOLDER]
 """
 
 import argparse
+import filecmp
 import http.client
 import http.server
+import json
 import os
 import re
 import select
@@ -21,6 +23,7 @@ import sys
 import tempfile
 import threading
 import time
+import urllib.request
 import zlib
 
 from chromium import Chromium
@@ -41,11 +44,15 @@ class Watching:
     """The program and a page that shows it."""
 
     def __init__(self, corda, browser, scene):
-        self.scene, self.browser = scene, browser
-        self.program = subprocess.Popen([corda, "watch", scene, "--host", "hub.localhost", "-q"], stdout=subprocess.PIPE, text=True)
-        self.address = self.program.stdout.readline().strip()
+        self.corda, self.scene, self.browser = corda, scene, browser
+        self.start(0)
         browser.open(self.address)
         browser.wait("document.readyState === 'complete' && typeof film === 'object' && film !== null && drawn >= 0")
+
+    def start(self, port):
+        self.program = subprocess.Popen([self.corda, "watch", self.scene, "--host", "hub.localhost", "--port", str(port), "-q"],
+                                        stdout=subprocess.PIPE, text=True, env={**os.environ, "XDG_RUNTIME_DIR": os.path.dirname(self.scene)})
+        self.address = self.program.stdout.readline().strip()
 
     def save(self, text):
         """Saves the scene as an editor does, by another file in its place."""
@@ -105,18 +112,85 @@ def processor_ms(pid):
 
 def check_scrubbing(watching, corda, folder):
     browser = watching.browser
+    choose_size(browser, 16384, 1280)
     for frame in (0, 7, 119, 60):
         browser.run(f"timeline.value = {frame}, timeline.dispatchEvent(new Event('input'))")
         browser.wait(f"drawn === {frame}")
-        check(pixels_of(browser) == still_of(corda, watching.scene, folder, frame, "640x360"), f"frame {frame} is not that of still")
+        check(pixels_of(browser) == still_of(corda, watching.scene, folder, frame, "1280x720"), f"frame {frame} is not that of still")
+    choose_size(browser, 320, 320)
+    check(browser.run("byId('side').value") == "320", "the page does not say its size")
+    choose_size(browser, 640, 640)
+    # Keys go to the film, whatever was clicked last.
+    for clicked in ("document.body", "timeline", "byId('play')", "byId('speed')", "byId('render')", "rows.get('world.duration').slider"):
+        browser.run(f"{clicked}.focus(), {clicked}.dispatchEvent(new Event('pointerup'))")
+        for key, expected in (("Home", 0), ("ArrowRight", 1), ("ArrowRight", 2), ("ArrowLeft", 1), ("End", 119)):
+            browser.press(key)
+            browser.wait(f"drawn === {expected}", 5)
     browser.run("document.activeElement.blur()")
-    for key, expected in (("ArrowRight", 61), ("ArrowLeft", 60), ("Home", 0), ("End", 119)):
-        browser.press(key)
-        browser.wait(f"drawn === {expected}")
     browser.press(" ", "Space", " ")
     browser.wait("playing !== null && drawn > 5 && drawn < 100")
     browser.press(" ", "Space", " ")
     browser.wait("playing === null")
+
+
+def choose_size(browser, px, width):
+    browser.run(f"byId('side').value = '{px}', byId('side').dispatchEvent(new Event('change'))")
+    browser.wait(f"film.width === {width} && canvas.width === {width}")
+
+
+def check_outputs(watching):
+    """Save frame and Render give the files of the program with the numbers of the page."""
+    browser, scene = watching.browser, watching.scene
+    angle = "rows.get('rope[0].hang.angle_deg')"
+    film = watching.film()
+    browser.run(f"{angle}.field.value = 50, {angle}.field.dispatchEvent(new Event('change'))")
+    browser.wait(f"film.number > {film} && canvas.dataset.frame.startsWith(film.number + ':')")
+    browser.run("seek(15)")
+    check(browser.run("byId('download').download") == "scene_0.5s.png", "another name of a frame")
+    address = watching.address + browser.run("byId('download').getAttribute('href')")
+    saved = urllib.request.urlopen(address).read()
+    made = os.path.join(os.path.dirname(scene), "made.png")
+    numbers = ["--set", "rope[0].hang.angle_deg=50"]
+    subprocess.run([watching.corda, "still", scene, "--frame", "15", *numbers, "-o", made, "-q"], check=True, stdout=subprocess.DEVNULL)
+    with open(made, "rb") as file:
+        check(saved == file.read(), "Save frame is not the file of still")
+    browser.run("byId('render').click()")
+    browser.wait("byId('rendered').textContent.endsWith('120 frames written')")
+    made = os.path.join(os.path.dirname(scene), "made.mp4")
+    subprocess.run([watching.corda, "render", scene, *numbers, "-o", made, "-q"], check=True, stdout=subprocess.DEVNULL)
+    check(filecmp.cmp(os.path.join(os.path.dirname(scene), "scene.mp4"), made, False), "Render is not the file of render")
+    browser.run("byId('discard').click()")
+    browser.wait("byId('writing').hidden")
+
+
+def check_tabs(watching):
+    """Pages share the six connections of a browser, and none of them keeps one."""
+    state = json.loads(urllib.request.urlopen(watching.address + "state?after=0").read())
+    start = time.monotonic()
+    for _ in range(6):
+        answer = urllib.request.urlopen(f"{watching.address}state?after={state['version']}")
+        check(answer.status == 204, "a state that is known is sent again")
+    check(time.monotonic() - start < 1, "a request for the state waits")
+
+
+def check_next_program(watching):
+    """A page that is open takes up the next program at its port."""
+    browser = watching.browser
+    port = int(re.search(r":(\d+)/", watching.address)[1])
+    watching.end()
+    watching.start(port)
+    check(watching.address.endswith("/"), "no address")
+    watching.end()
+    watching.start(port)
+    browser.open(watching.address)
+    browser.wait(f"location.href === {watching.address!r} && typeof film === 'object' && film !== null && drawn >= 0")
+    film, address = watching.film(), watching.address
+    check(watching.end() == 130, "another status after Ctrl-C")
+    browser.wait("byId('status').textContent.startsWith('corda watch has ended')")
+    watching.start(port)
+    check(watching.address == address, "the address has changed")
+    browser.wait(f"film.number > {film} && canvas.dataset.frame.startsWith(film.number + ':') && !byId('status').classList.contains('bad')")
+    check(browser.run("byId('problems').hidden"), "a problem is shown")
 
 
 def check_errors(watching):
@@ -278,13 +352,13 @@ def check_saves(watching, count):
 def keep_figures(watching, folder):
     browser = watching.browser
     os.makedirs(folder, exist_ok=True)
-    for name, width, height, scale, mobile in (("desktop", 1280, 860, 1, False), ("phone", 390, 844, 2, True)):
+    for name, width, height, scale, mobile in (("desktop", 1440, 900, 1, False), ("phone", 390, 844, 2, True)):
         browser.resize(width, height, scale, mobile)
         for scheme in ("light", "dark"):
             browser.use_scheme(scheme)
             time.sleep(0.5)
             browser.screenshot(os.path.join(folder, f"{name}-{scheme}.png"), mobile)
-    browser.resize(1280, 860)
+    browser.resize(1440, 900)
     watching.save(SCENE.replace("length = 1.0", "lenght = -1.0").replace("fps = 30", "fps = 0"))
     browser.wait("!byId('problems').hidden")
     browser.screenshot(os.path.join(folder, "error.png"))
@@ -308,7 +382,10 @@ def main():
                 check_errors(watching)
                 check_numbers(watching)
                 check_faults(watching)
+                check_outputs(watching)
+                check_tabs(watching)
                 check_ways(watching)
+                check_next_program(watching)
                 check_saves(watching, options.saves)
                 if options.figures:
                     keep_figures(watching, options.figures)

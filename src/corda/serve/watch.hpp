@@ -2,11 +2,11 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "corda/core/file.hpp"
 #include "corda/film/film.hpp"
 #include "corda/serve/server.hpp"
 
@@ -16,7 +16,8 @@ namespace corda::serve {
 struct WatchDef {
     std::string path;               ///< of the scene file
     std::vector<Setting> settings;  ///< in the place of values of the file
-    int longest_side_px = 640;      ///< of the pictures, which keep the shape of video.size
+    /// Of the pictures, which keep the shape of video.size; empty: as the page has room.
+    std::optional<int> longest_side_px = {};
     std::size_t picture_bytes = std::size_t{96} << 20U;  ///< room for pictures that are kept
     FilmDef film;                                        ///< how to reach OpenGL
     /// Called on a thread of the watch with the problems that keep it from showing the file; may be empty.
@@ -34,7 +35,8 @@ class Watch : NonCopyable {
     explicit Watch(WatchDef def);
     ~Watch();
 
-    /// Ends all work, and answers the requests that wait. To be called before the server ends.
+    /// Ends all work, a render as well, and answers the requests that wait. To be called before the server
+    /// ends.
     void end();
 
     /// Loads the scene again, because its file has changed.
@@ -42,43 +44,20 @@ class Watch : NonCopyable {
 
     /// Answers a request of the page:
     ///   "", "style.css", "watch.js"       the page
-    ///   "state?after=V"                   JSON: film, errors and numbers, once their version is not V
-    ///   "frame/K.png?film=N"              frame K of film N, with the bytes that `still` writes at that size
+    ///   "state?after=V"                   JSON: film, errors and numbers; status 204 if their version is V
+    ///   "frame/K.png?film=N"              frame K of film N, made smaller
+    ///   "still/K.png?film=N"              the file that `still --frame K` writes of the scene
     ///   "curves?film=N"                   JSON: angle and energy at the times of frames
     ///   POST "number" {"key", "value"}    another value of a number of the scene; null: that of the file
     ///   POST "write"                      writes the changed numbers to the scene file
-    ///   POST "side" {"px"}                another longest side of the pictures
+    ///   POST "side" {"px", "fits"}        another longest side of the pictures; whether it is the page's room
+    ///   POST "render" {"ending", "force"} renders the film beside the scene file; "mp4", "webm", "mov", "gif"
+    ///   POST "stop"                       ends that
     [[nodiscard]] Response answer(const Request& request);
 
   private:
     std::unique_ptr<WatchState> state_;
     std::jthread thread_;
-};
-
-/// Notices changes of a file, also by programs that put another file in its place.
-class FileWatch {
-  public:
-    /// Throws corda::Error: kTemporary if the system watches no more files, kIo if there is no such folder.
-    explicit FileWatch(const std::string& path);
-
-    /// Waits up to `timeout_ms` for a change of the folder. Whether the file has changed, its time, size and
-    /// number tell, also on file systems of other machines, which report nothing.
-    [[nodiscard]] bool wait(int timeout_ms);
-
-  private:
-    struct Stamp {
-        long long seconds = 0;
-        long long nanoseconds = 0;
-        long long bytes = -1;  ///< -1: there is no file
-        unsigned long long number = 0;
-
-        friend bool operator==(const Stamp&, const Stamp&) = default;
-    };
-    [[nodiscard]] Stamp stamp() const;
-
-    std::string path_;
-    Descriptor inotify_;
-    Stamp last_;
 };
 
 }  // namespace corda::serve

@@ -12,7 +12,7 @@ let drawn = -1;        // the frame on the canvas
 let playing = null;    // {since, from}: when and where playing began
 let curves = null;
 
-const kMostBitmaps = 120;
+const kBitmapBytes = 256 * 2 ** 20;
 let bitmaps = new Map();  // frame -> promise of an ImageBitmap, the oldest first
 
 function make(tag, attributes = {}, ...children) {
@@ -28,6 +28,18 @@ function post(path, body = {}) {
 
 // ---------------------------------------------------------------- frames
 
+/// How many bitmaps are kept: as many as have room, and a few of the largest.
+const mostBitmaps = () => Math.max(4, Math.floor(kBitmapBytes / (4 * film.width * film.height)));
+
+function drop(bitmap) {
+    bitmap.then((its) => its.close(), () => {});
+}
+
+function dropAll() {
+    for (const bitmap of bitmaps.values()) drop(bitmap);
+    bitmaps = new Map();
+}
+
 function bitmapOf(k) {
     const kept = bitmaps.get(k);
     if (kept) return kept;
@@ -38,7 +50,12 @@ function bitmapOf(k) {
     });
     bitmap.catch(() => { if (film.number === number) bitmaps.delete(k); });
     bitmaps.set(k, bitmap);
-    if (bitmaps.size > kMostBitmaps) bitmaps.delete(bitmaps.keys().next().value);
+    for (const other of bitmaps.keys()) {
+        if (bitmaps.size <= mostBitmaps()) break;
+        if (other === frame || other === k) continue;
+        drop(bitmaps.get(other));
+        bitmaps.delete(other);
+    }
     return bitmap;
 }
 
@@ -47,8 +64,8 @@ async function show(k) {
     timeline.value = k;
     const number = film.number;
     byId("time").textContent = `${(k * film.frame_s).toFixed(2)} s, frame ${k}`;
-    byId("download").href = `frame/${k}.png?film=${number}`;
-    byId("download").download = `frame-${k}.png`;
+    byId("download").href = `still/${k}.png?film=${number}`;
+    byId("download").download = `${film.name}_${Number((k * film.frame_s).toFixed(6))}s.png`;
     markTime();
     try {
         const bitmap = await bitmapOf(k);
@@ -60,7 +77,7 @@ async function show(k) {
         drawn = k;
         canvas.dataset.frame = `${number}:${k}`;
     } catch (error) {
-        if (error.message) showProblems([{line: null, text: error.message}]);
+        if (error.message && !(error instanceof TypeError || error instanceof DOMException)) showProblems([{line: null, text: error.message}]);
         else setTimeout(() => { if (film.number === number && frame === k && drawn !== k) show(k); }, 200);
     }
 }
@@ -86,7 +103,7 @@ function play(now) {
     // A film that is drawn more slowly than it plays waits for its frames.
     if (drawn !== frame) playing = {since: now, from: frame};
     else if (k !== frame) show(k);
-    for (let ahead = 1; ahead <= 8; ++ahead) bitmapOf((frame + ahead) % film.frames);
+    for (let ahead = 1; ahead <= Math.min(8, mostBitmaps() - 2); ++ahead) bitmapOf((frame + ahead) % film.frames);
     requestAnimationFrame(play);
 }
 
@@ -105,7 +122,7 @@ function showStatus(state) {
     status.classList.toggle("bad", state.problems.length > 0);
     if (state.busy) status.textContent = state.progress > 0 ? `simulating, ${Math.round(100 * state.progress)} %` : "loading";
     else if (state.problems.length > 0) status.textContent = state.film ? "the last good film is shown" : "no film yet";
-    else status.textContent = `${state.film.width} x ${state.film.height}, ${state.film.frames} frames at ${Number(state.film.fps.toFixed(3))} per second`;
+    else status.textContent = `${state.film.full.join(" x ")}, ${state.film.frames} frames at ${Number(state.film.fps.toFixed(3))} per second`;
 }
 
 function take(state) {
@@ -116,9 +133,14 @@ function take(state) {
     showStatus(state);
     if (!state.busy) showProblems(state.problems);
     showNumbers(state);
-    if (!state.film || (film && film.number === state.film.number)) return;
-    film = state.film;
-    bitmaps = new Map();
+    showRender(state.render);
+    if (state.film && (!film || film.number !== state.film.number)) takeFilm(state.film);
+    showSide(state.side);
+}
+
+function takeFilm(next) {
+    film = next;
+    dropAll();
     drawn = -1;
     timeline.max = film.frames - 1;
     byId("plan").replaceChildren(...film.plan.map((line) => make("li", {}, line)));
@@ -126,23 +148,88 @@ function take(state) {
     readCurves();
 }
 
+const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+
+/// Asks for the state again and again, and not at all while nobody sees the page: pages share the few
+/// connections that a browser opens to a program.
 async function follow() {
     for (;;) {
+        if (document.hidden) await new Promise((resolve) => document.addEventListener("visibilitychange", resolve, {once: true}));
+        let wait = 80;
         try {
             const response = await fetch(`state?after=${version}`);
-            const state = await response.json();
-            if (!state.ended) {
-                take(state);
-                continue;
-            }
+            if (response.status === 200) take(await response.json());
+            else if (!response.ok) throw new Error("it runs at another address now; open the one that it has printed");
         } catch (error) {
-            // The program has ended; it may be started again at this address.
+            // The program has ended. It may be started again at this address.
+            const isOther = !(error instanceof TypeError);
+            byId("status").textContent = isOther ? error.message : "corda watch has ended; this page waits for the next one";
+            byId("status").classList.add("bad");
+            version = 0;
+            wait = 1000;
         }
-        byId("status").textContent = "corda watch has ended";
-        byId("status").classList.add("bad");
-        await new Promise((resolve) => setTimeout(resolve, 1000));
+        await sleep(wait);
     }
 }
+
+// ---------------------------------------------------------------- size
+
+let fits = true;  // the size follows the room that the page has
+
+function showSide(side) {
+    fits = side.fits;
+    const select = byId("side");
+    const value = fits ? "fit" : String(side.px);
+    if (![...select.options].some((option) => option.value === value)) select.append(make("option", {value}, `${side.px} px`));
+    if (document.activeElement !== select) select.value = value;
+    if (!film) return;
+    const [width, height] = film.full;
+    canvas.style.aspectRatio = `${width} / ${height}`;
+    canvas.style.maxWidth = `min(100%, ${75 * width / height}vh${fits ? "" : `, ${film.width}px`})`;
+    if (fits) fit();
+}
+
+/// Asks for pictures as large as the page shows them, in steps, so that a window that is resized asks seldom.
+function fit() {
+    if (!film || document.hidden) return;
+    const [width, height] = film.full;
+    const room = Math.min(byId("stage").clientWidth, 0.75 * innerHeight * width / height) * Math.max(1, width <= height ? height / width : 1);
+    const px = Math.max(160, 64 * Math.ceil(room * devicePixelRatio / 64));
+    const most = Math.max(width, height);
+    if (Math.min(px, most) !== Math.max(film.width, film.height) && fit.asked !== px) {
+        fit.asked = px;
+        post("side", {px, fits: true}).catch(() => { fit.asked = 0; });
+    }
+}
+
+document.addEventListener("visibilitychange", () => { fit.asked = 0; if (fits) fit(); });
+globalThis.onresize = () => {
+    if (fits) fit();
+    showCurves();
+};
+
+// ---------------------------------------------------------------- video
+
+function showRender(render) {
+    const isRunning = render !== null && render.is_running;
+    byId("rendering").hidden = !isRunning;
+    byId("render").textContent = isRunning ? "Stop" : "Render";
+    byId("ending").disabled = isRunning;
+    if (render === null) return;
+    byId("rendering").value = render.progress;
+    byId("rendered").textContent = isRunning ? `${Math.round(100 * render.progress)} % of ${render.path}` : `${render.path}: ${render.text}`;
+}
+
+byId("render").addEventListener("click", async () => {
+    if (byId("render").textContent === "Stop") return post("stop");
+    const ending = byId("ending").value;
+    let response = await post("render", {ending});
+    if (response.status === 409 && response.headers.get("content-type").startsWith("application/json")) {
+        if (!confirm(`${(await response.json()).exists} exists. Replace it?`)) return;
+        response = await post("render", {ending, force: true});
+    }
+    if (!response.ok) byId("rendered").textContent = await response.text();
+});
 
 // ---------------------------------------------------------------- numbers
 
@@ -166,16 +253,35 @@ async function send(key, value) {
     sending.delete(key);
 }
 
-/// The ends and the step of a slider: around the number of the scene, within the range of the key.
-function extentOf(number) {
-    const size = Math.abs(number.unchanged);
-    let [low, high] = number.unchanged > 0 ? [0, 3 * size] : number.unchanged < 0 ? [-3 * size, 3 * size] : [-1, 1];
-    if (number.unit === "degrees") [low, high] = [-180, 180];
+/// The ends and the step of a slider: around the number of the scene, within the range of the key. The steps
+/// are counted from the number, so that it is always one of them.
+function extentOf(number, value = number.unchanged) {
+    const size = Math.abs(value);
+    const most = Math.max(number.low, -1e300), least = Math.min(number.high, 1e300);
+    let [low, high] = value > 0 ? [0, 3 * size] : value < 0 ? [-3 * size, 3 * size] : [-1, 1];
+    if (number.unit === "degrees" && (size >= 1 || size === 0)) [low, high] = [Math.min(-180, 180 * Math.floor(value / 180)), Math.max(180, 180 * Math.ceil(value / 180))];
     if (number.is_integer) high = Math.max(high, low + 10);
-    const step = number.is_integer ? 1 : 10 ** Math.floor(Math.log10((high - low) / 200));
-    low = Math.max(low, number.low);
-    high = Math.min(high, number.high);
-    return {low, high, step};
+    low = Math.max(low, most);
+    high = Math.min(high, least);
+    let exponent = number.is_integer ? 0 : Math.floor(Math.log10((high - low) / 200));
+    // A step that the number itself is a multiple of, if there is one that is not too small.
+    const isMultiple = () => Math.abs(value / 10 ** exponent - Math.round(value / 10 ** exponent)) < 1e-6;
+    if (!number.is_integer) for (let finer = 0; finer < 2 && !isMultiple(); ++finer) --exponent;
+    const step = 10 ** exponent;
+    const digits = (its) => Math.abs(its) < 1e-6 * step ? 0 : Number(its.toPrecision(12));
+    const at = (end) => digits(value + Math.sign(end - value) * step * Math.floor(Math.abs(end - value) / step + 1e-6));
+    low = at(low);
+    if (low < number.low || (number.low_open && low === number.low)) low = digits(low + step);
+    return {low, high: at(high), step: digits(step)};
+}
+
+/// Shows a value on its slider, which is made to have it if it does not.
+function place(slider, number) {
+    slider.value = number.value;
+    if (Math.abs(Number(slider.value) - number.value) <= 1e-9 * Math.abs(number.value)) return;
+    const {low, high, step} = extentOf(number, number.value);
+    Object.assign(slider, {min: low, max: high, step});
+    slider.value = number.value;
 }
 
 function makeRow(number) {
@@ -185,6 +291,7 @@ function makeRow(number) {
     const field = make("input", {type: "number", step: "any", "aria-label": `${number.key}, exact`});
     const label = make("label", {for: id, title: number.meaning}, number.key, " ", make("small", {}, number.unit));
     const box = make("div", {class: "number"}, label, slider, field);
+    slider.addEventListener("pointerup", () => slider.blur());  // so that keys go to the film again
     slider.addEventListener("input", () => {
         field.value = slider.value;
         send(number.key, Number(slider.value));
@@ -204,7 +311,7 @@ function showNumbers(state) {
         if (!row || row.signature !== signatureOf(number)) rows.set(number.key, makeRow(number));
         const {box, slider, field} = rows.get(number.key);
         box.classList.toggle("changed", number.value !== number.unchanged);
-        if (slider !== active && !sending.has(number.key)) slider.value = number.value;
+        if (slider !== active && !sending.has(number.key)) place(slider, number);
         if (field !== active && !sending.has(number.key)) field.value = number.value;
     }
     const boxes = state.numbers.map((number) => rows.get(number.key).box);
@@ -226,38 +333,70 @@ byId("discard").addEventListener("click", () => {
 
 // ---------------------------------------------------------------- curves
 
-const kWidth = 600;
-const kHeight = 130;
+const kHeight = 170;
+const kLeft = 52, kRight = 10, kTop = 8, kBottom = 34;  // room for numbers and units
 
-function svg(tag, attributes) {
+function svg(tag, attributes, text = "") {
     const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
     for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+    element.textContent = text;
     return element;
 }
 
 const shown = (value) => Number(value.toPrecision(4)).toString().replace("-", "\u2212");
 
-function drawCurves(title, unit, series) {
+/// The multiples of 1, 2 or 5 times a power of ten within a range: `count` at most.
+function ticksOf(low, high, count) {
+    const power = 10 ** Math.floor(Math.log10((high - low) / count));
+    const step = power * [1, 2, 5, 10].find((factor) => factor * power * count >= high - low);
+    const ticks = [];
+    for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) ticks.push(k * step);
+    return ticks;
+}
+
+function drawCurves({title, unit, series}, width) {
     const all = series.flatMap(([, values]) => values);
     let low = Math.min(...all), high = Math.max(...all);
     if (!(high > low)) [low, high] = [low - 1, high + 1];
-    const x = (t) => t / curves.end * kWidth;
-    const y = (value) => kHeight - 4 - (value - low) / (high - low) * (kHeight - 8);
-    const picture = svg("svg", {viewBox: `0 0 ${kWidth} ${kHeight}`, preserveAspectRatio: "none", role: "img", "aria-label": title});
-    if (low < 0 && high > 0) picture.append(svg("line", {class: "axis", x1: 0, x2: kWidth, y1: y(0), y2: y(0)}));
+    const x = (t) => kLeft + t / curves.end * (width - kLeft - kRight);
+    const y = (value) => kTop + (high - value) / (high - low) * (kHeight - kTop - kBottom);
+    const picture = svg("svg", {width, height: kHeight, role: "img", "aria-label": `${title} in ${unit} over time`});
+    for (const value of ticksOf(low, high, 4)) {
+        picture.append(svg("line", {class: "axis", x1: kLeft, x2: width - kRight, y1: y(value), y2: y(value)}),
+            svg("text", {x: kLeft - 6, y: y(value) + 4, "text-anchor": "end"}, shown(value)));
+    }
+    for (const t of ticksOf(0, curves.end, Math.max(2, Math.floor(width / 90)))) {
+        picture.append(svg("line", {class: "axis", x1: x(t), x2: x(t), y1: kTop, y2: kHeight - kBottom}),
+            svg("text", {x: x(t), y: kHeight - kBottom + 14, "text-anchor": "middle"}, shown(t)));
+    }
+    picture.append(svg("text", {x: (kLeft + width - kRight) / 2, y: kHeight - 3, "text-anchor": "middle"}, "time in s"));
     series.forEach(([, values], i) => picture.append(svg("path", {
         class: `s${i + 1}`, d: values.map((value, k) => `${k ? "L" : "M"}${x(curves.t[k]).toFixed(1)} ${y(value).toFixed(1)}`).join("")})));
-    picture.append(svg("line", {class: "now", x1: 0, x2: 0, y1: 0, y2: kHeight}));
+    picture.append(svg("line", {class: "now", y1: kTop, y2: kHeight - kBottom}));
+    picture.xOf = x;
     const seekHere = (event) => {
         if (event.type === "pointermove" && event.buttons === 0) return;
         const box = picture.getBoundingClientRect();
-        seek((event.clientX - box.left) / box.width * curves.end / film.frame_s);
+        seek((event.clientX - box.left - kLeft) / (width - kLeft - kRight) * curves.end / film.frame_s);
     };
     picture.addEventListener("pointerdown", seekHere);
     picture.addEventListener("pointermove", seekHere);
     const names = series.map(([name], i) => make("span", {class: `s${i + 1}`}, name));
-    return make("figure", {}, make("figcaption", {}, make("b", {}, `${title} (${unit})`), ...(series.length > 1 ? names : [])), picture,
-        make("div", {class: "range"}, make("span", {}, `0 s`), make("span", {}, `${shown(low)} to ${shown(high)}${unit === "°" ? "" : " "}${unit}`), make("span", {}, `${shown(curves.end)} s`)));
+    return make("figure", {}, make("figcaption", {}, make("b", {}, `${title} in ${unit}`), ...(series.length > 1 ? names : [])), picture);
+}
+
+function showCurves() {
+    if (!curves) return;
+    const total = curves.kinetic_j.map((value, k) => value + curves.potential_j[k]);
+    const plots = [];
+    if (curves.angle_deg.length > 0) plots.push({title: "Angle of the free end", unit: "degrees", series: [["angle", curves.angle_deg]]});
+    if (total.every(Number.isFinite) && total.length > 0)
+        plots.push({title: "Energy", unit: "J", series: [["kinetic", curves.kinetic_j], ["potential", curves.potential_j], ["total", total]]});
+    const panel = byId("curves");
+    panel.replaceChildren(...plots.map(() => make("figure")));  // for the widths that they get
+    const widths = [...panel.children].map((figure) => Math.max(160, figure.clientWidth - 26));
+    panel.replaceChildren(...plots.map((plot, i) => drawCurves(plot, widths[i])));
+    markTime();
 }
 
 async function readCurves() {
@@ -268,19 +407,13 @@ async function readCurves() {
     if (!response.ok) return;
     curves = await response.json();
     curves.end = Math.max(curves.t[curves.t.length - 1], film.frame_s);
-    const total = curves.kinetic_j.map((value, k) => value + curves.potential_j[k]);
-    const figures = [];
-    if (curves.angle_deg.length > 0) figures.push(drawCurves("Angle of the free end", "°", [["angle", curves.angle_deg]]));
-    if (total.every(Number.isFinite) && total.length > 0)
-        figures.push(drawCurves("Energy", "J", [["kinetic", curves.kinetic_j], ["potential", curves.potential_j], ["total", total]]));
-    byId("curves").replaceChildren(...figures);
-    markTime();
+    showCurves();
 }
 
 function markTime() {
-    if (!curves) return;
-    const x = frame * film.frame_s / curves.end * kWidth;
-    for (const line of document.querySelectorAll("#curves .now")) {
+    for (const picture of document.querySelectorAll("#curves svg")) {
+        const x = picture.xOf(frame * film.frame_s);
+        const line = picture.querySelector(".now");
         line.setAttribute("x1", x);
         line.setAttribute("x2", x);
     }
@@ -291,9 +424,18 @@ function markTime() {
 timeline.addEventListener("input", () => seek(Number(timeline.value)));
 byId("play").addEventListener("click", () => setPlaying(!playing));
 byId("speed").addEventListener("change", () => seek(frame));
-byId("side").addEventListener("change", (event) => post("side", {px: Number(event.target.value)}));
+byId("side").addEventListener("change", (event) => {
+    fits = event.target.value === "fit";
+    fit.asked = 0;
+    post("side", {px: fits ? Math.max(film.width, film.height) : Number(event.target.value), fits});
+});
+for (const select of document.querySelectorAll("select")) select.addEventListener("change", () => select.blur());
 document.addEventListener("keydown", (event) => {
-    if (!film || event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input, select, button, a")) return;
+    if (!film || event.ctrlKey || event.metaKey || event.altKey) return;
+    const target = event.target;
+    // A field takes all keys, a slider that the Tab key has chosen its own, and a button or link the space bar.
+    if (target.type === "number" || (target.type === "range" && target !== timeline && event.key !== " ")) return;
+    if (event.key === " " && target.closest("button, a, select")) return;
     const step = event.shiftKey ? 10 : 1;
     const actions = {
         " ": () => setPlaying(!playing),

@@ -3,15 +3,18 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <cstdint>
 #include <future>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "corda/media/defs.hpp"
+#include "corda/serve/smaller.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"
 #include "support/image_matchers.hpp"
@@ -40,12 +43,16 @@ std::string replaced(std::string text, const std::string& old, const std::string
 
 /// The next state that is not busy and has another version than `version`, which becomes its own.
 Json next_state(Watch& watch, std::int64_t& version) {
-    Json state;
-    do {
-        state = Json::parse(watch.answer({false, "state", {{"after", std::to_string(version)}}, ""}).body);
+    while (true) {
+        const Response response = watch.answer({false, "state", {{"after", std::to_string(version)}}, ""});
+        if (response.status == 204) {  // unchanged
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            continue;
+        }
+        Json state = Json::parse(response.body);
         version = state["version"];
-    } while (state["busy"]);
-    return state;
+        if (!state["busy"]) return state;
+    }
 }
 
 class WatchTest : public testing::Test {
@@ -84,11 +91,9 @@ TEST_F(WatchTest, ShowsTheFramesOfTheFilm) {
     EXPECT_EQ(film["height"], 180);
     EXPECT_EQ(film["fps"], 30.0);
     EXPECT_THAT(film["plan"].dump(), HasSubstr("error estimate"));
-    Scene scene = parse_scene(kScene, "scene.toml");
-    scene.video.width_px = 320;
-    scene.video.height_px = 180;
-    Film expected(scene);
-    for (const std::int64_t k : {17, 0, 29}) EXPECT_EQ(picture(k, film["number"]), expected.frame(k)) << k;
+    const Film whole(parse_scene(kScene, "scene.toml"));
+    for (const std::int64_t k : {17, 0, 29})
+        EXPECT_EQ(picture(k, film["number"]), made_smaller(whole.frame(k), 320, 180)) << k;
     for (const char* const path : {"frame/30.png", "frame/-1.png", "frame/3.gif", "frame/", "other"})
         EXPECT_GE(get(path, film["number"]).status, 400U) << path;
     EXPECT_EQ(get("frame/3.png", 99).status, 410U);
@@ -143,9 +148,7 @@ TEST_F(WatchTest, ASaveInterruptsTheWork) {
     test::write_file(
         path_, replaced(replaced(kScene, "links = 3", "links = 3000"), "duration = 1.0", "duration = 60.0"));
     watch_.reload();
-    while (
-        !Json::parse(watch_.answer({false, "state", {{"after", std::to_string(version_)}}, ""}).body)["busy"])
-        continue;
+    while (!Json::parse(watch_.answer({false, "state", {{"after", "0"}}, ""}).body)["busy"]) continue;
     EXPECT_EQ(save(kScene)["film"]["frames"], 30);
 }
 
@@ -178,11 +181,12 @@ TEST_F(WatchTest, NumbersChangeTheFilmAndTheFileOnlyWhenAsked) {
 
 TEST_F(WatchTest, AFrameStaysUntilItIsTaken) {
     Watch watch({.path = path_, .settings = {}, .longest_side_px = 160, .picture_bytes = 1, .film = {}});
-    while (Json::parse(watch.answer({false, "state", {{"after", "0"}}, ""}).body)["busy"]) continue;
+    std::int64_t version = 0;
+    const std::string number = next_state(watch, version)["film"]["number"].dump();
     std::vector<std::future<Response>> frames;
     for (int k = 0; k < 30; ++k)
-        frames.push_back(std::async(std::launch::async, [&watch, k] {
-            return watch.answer({false, fmt::format("frame/{}.png", k), {{"film", "1"}}, ""});
+        frames.push_back(std::async(std::launch::async, [&watch, &number, k] {
+            return watch.answer({false, fmt::format("frame/{}.png", k), {{"film", number}}, ""});
         }));
     for (std::future<Response>& frame : frames) EXPECT_EQ(frame.get().status, 200U);
 }
@@ -258,29 +262,60 @@ TEST_F(WatchTest, PicturesHaveTheSizeThatIsAskedFor) {
     EXPECT_EQ(film["width"], 640);
     EXPECT_EQ(picture(0, film["number"]).height(), 360);
     EXPECT_EQ(post("side", {{"px", 100000}}).status, 200U);
-    EXPECT_EQ(state()["film"]["width"], 1280);  // that of the scene
+    const Json whole = state();
+    EXPECT_EQ(whole["film"]["width"], 1280);  // that of the scene
+    EXPECT_EQ(whole["side"], (Json{{"px", kMaxSidePx}, {"fits", false}}));
     EXPECT_EQ(post("side", {{"px", "big"}}).status, 400U);
 }
 
-TEST(FileWatch, NamesAMissingFolder) {
-    const test::Failure failure = test::failure_of([] { const FileWatch file("/nowhere/a.toml"); });
-    EXPECT_EQ(failure.code, ExitCode::kIo);
-    EXPECT_THAT(failure.message, AllOf(HasSubstr("'/nowhere/a.toml'"), HasSubstr("check the path"),
-                                       Not(HasSubstr("inotify"))));
+TEST_F(WatchTest, AnswersAtOnceWhetherTheStateIsNew) {
+    const Json now = state();
+    EXPECT_EQ(now["side"], (Json{{"px", 320}, {"fits", false}}));
+    EXPECT_EQ(watch_.answer({false, "state", {{"after", now["version"].dump()}}, ""}).status, 204U);
+    // Those of the next program at the same address are others.
+    Watch next({.path = path_, .settings = {}, .longest_side_px = {}, .film = {}});
+    std::int64_t version = 0;
+    const Json later = next_state(next, version);
+    EXPECT_GT(later["film"]["number"], now["film"]["number"]);
+    EXPECT_EQ(later["side"]["fits"], true);
 }
 
-TEST(FileWatch, SeesOtherBytesAndAnotherFileUnderTheName) {
-    const test::ScratchFolder folder;
-    const std::string path = folder.write("a.toml", "1");
-    FileWatch file(path);
-    EXPECT_FALSE(file.wait(0));
-    test::write_file(path, "12");
-    EXPECT_TRUE(file.wait(0));
-    EXPECT_FALSE(file.wait(0));
-    static_cast<void>(test::run_shell("cd " + folder.path() + " && printf 12 >b && mv b a.toml"));
-    EXPECT_TRUE(file.wait(0));
-    static_cast<void>(folder.write("b.toml", "other"));
-    EXPECT_FALSE(file.wait(0));
+/// The bytes of the command line's files, with the numbers of the page.
+TEST_F(WatchTest, StillsAndVideosAreThoseOfTheProgram) {
+    static_cast<void>(state());
+    EXPECT_EQ(post("number", {{"key", "rope[0].hang.angle_deg"}, {"value", 45}}).status, 200U);
+    const std::int64_t film = state()["film"]["number"];
+    const auto made_by = [&](const std::vector<std::string>& command, const std::string& output) {
+        const std::string path = folder_.path() + "/" + output;
+        std::vector<std::string> words = command;
+        words.insert(words.begin() + 1, path_);
+        words.insert(words.end(), {"--set", "rope[0].hang.angle_deg=45", "-o", path});
+        const test::CommandResult run = test::run_corda(words);
+        EXPECT_EQ(run.exit_code, 0) << run.err;
+        return test::read_file(path);
+    };
+    const Response still = get("still/7.png", film);
+    EXPECT_EQ(still.status, 200U);
+    EXPECT_TRUE(still.body == made_by({"still", "--frame", "7"}, "still.png"));
+    EXPECT_EQ(get("still/30.png", film).status, 410U);
+    EXPECT_EQ(get("still/7.png", film + 1).status, 410U);
+
+    EXPECT_EQ(post("render", {{"ending", "exe"}}).status, 400U);
+    EXPECT_EQ(post("render", {{"ending", "mp4"}}).status, 200U);
+    Json render;
+    do render = state()["render"];
+    while (render["is_running"]);
+    EXPECT_EQ(render["text"], "30 frames written");
+    EXPECT_EQ(render["progress"], 1.0);
+    EXPECT_TRUE(test::read_file(folder_.path() + "/scene.mp4") == made_by({"render"}, "other.mp4"));
+    const Response exists = post("render", {{"ending", "mp4"}});
+    EXPECT_EQ(exists.status, 409U);
+    EXPECT_THAT(exists.body, HasSubstr("scene.mp4"));
+    EXPECT_EQ(post("render", {{"ending", "mp4"}, {"force", true}}).status, 200U);
+    EXPECT_EQ(post("stop", Json::object()).status, 200U);
+    EXPECT_EQ(state()["render"]["is_running"], false);
+    EXPECT_TRUE(test::read_file(folder_.path() + "/scene.mp4") ==
+                test::read_file(folder_.path() + "/other.mp4"));
 }
 
 }  // namespace
