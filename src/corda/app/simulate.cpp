@@ -298,8 +298,7 @@ void add_simulate(CLI::App& app, Action& action) {
     command.add_flag(
         "--energy", options.columns.energy,
         "add the change of the energy since the start, and its parts: energy_change_j, kinetic_j, "
-        "potential_j, in which the weight has 0 J at the start; if pins move, their work since the start "
-        "too: "
+        "potential_j, in which the weight has 0 J at the start; and the work of pins that move: "
         "support_work_j");
     command.add_flag("--diagnostics", options.columns.diagnostics,
                      "add energy error, strain, pin force and tension to every row");

@@ -13,7 +13,8 @@ from ._corda import Error
 from ._motion import first_turn, spread
 from ._sample import REFUSALS
 from ._shards import rows_of
-from ._sweep_file import Distribution, is_number, section_of, short_text, value_text
+from ._distributions import Distribution
+from ._sweep_file import is_number, section_of, short_text, value_text
 
 try:
     from matplotlib import style

@@ -12,6 +12,7 @@ import tomllib
 
 from . import _corda, _error, _path
 from ._corda import Error
+from ._distributions import SHAPES, Distribution, rounded
 
 MAX_SAMPLES = 1_000_000_000
 MAX_SHARD_SAMPLES = 1_000_000
@@ -22,33 +23,6 @@ SUMMARY = ("period_s", "angle_max_deg", "tension_max_n", "speed_max_m_s", "strai
 _MAX_FILE_BYTES = 16 << 20
 _MAX_COMPONENTS = 1 << 16
 _MAX_RANGE = 1_000_000
-_LEAST_NORMAL = sys.float_info.min
-
-#: By distribution: a test of its two numbers, and their description in messages.
-_SHAPES = {
-    "uniform": (lambda low, high: low <= high and math.isfinite(high - low),
-                "is [least, largest], two numbers, the smaller first, or two vectors of one length"),
-    "log_uniform": (lambda low, high: _LEAST_NORMAL <= low <= high and math.isfinite(high / low),
-                    "is [least, largest], two positive numbers or two vectors of one length"),
-    "normal": (lambda mean, deviation: deviation > 0.0,
-               "is [mean, standard deviation], the second positive, or two vectors of one length; bounds are min and max"),
-    "integer": (lambda low, high: low == math.floor(low) and high == math.floor(high) and low <= high
-                and max(abs(low), abs(high)) <= 2.0**52,
-                "is [least, largest], two whole numbers, both included, or two vectors of one length"),
-}
-
-
-@dataclasses.dataclass(frozen=True)
-class Distribution:
-    """Independent numbers, one per component; of a number, one component."""
-
-    shape: str
-    is_vector: bool
-    first: list  #: per component: the least number; of "normal", the mean
-    second: list  #: per component: the largest number; of "normal", the standard deviation
-    min: list  #: bounds of "normal", which may be infinite
-    max: list
-
 
 @dataclasses.dataclass
 class Definition:
@@ -350,21 +324,21 @@ class _Reader:
         count = 1 + math.floor((last - first) / step * (1.0 + 1e-12))
         if all(isinstance(end, int) for end in ends):
             first, step = ends[0], ends[2]
-        self._sweep.vary[key] = [_shortened(first + k * step) for k in range(count)]
+        self._sweep.vary[key] = [rounded(first + k * step) for k in range(count)]
 
     def _read_distribution(self, key, table):
         path = ("vary", key)
-        self._refuse_others(path, table, (*_SHAPES, "range", "min", "max"))
-        shapes = [shape for shape in _SHAPES if shape in table]
+        self._refuse_others(path, table, (*SHAPES, "range", "min", "max"))
+        shapes = [shape for shape in SHAPES if shape in table]
         if not shapes:
             if all(name in ("min", "max") for name in table):
-                self._fail(path, f"no distribution; give {', '.join(_SHAPES)}, range")
+                self._fail(path, f"no distribution; give {', '.join(SHAPES)}, range")
             return
         if len(shapes) > 1:
             self._fail(path, "two distributions; give one")
             return
         (shape,) = shapes
-        is_sound, remedy = _SHAPES[shape]
+        is_sound, remedy, _ = SHAPES[shape]
         ends = table[shape]
         is_vector = isinstance(ends, list) and len(ends) == 2 and isinstance(ends[0], list)
         first, second = (_numbers(end, is_vector) for end in ends) if isinstance(ends, list) and len(ends) == 2 else (None, None)
@@ -429,11 +403,6 @@ class _Reader:
         if len(sound) == len(split) and not abs(total - 1.0) < 1e-9:
             self._fail(("split",), f"the shares have the sum {total:.6g}; give shares with the sum 1")
         self._sweep.splits = sound
-
-
-def _shortened(value):
-    """A sum of rounded decimals as a reader expects it: 12 significant digits."""
-    return value if isinstance(value, int) else float(f"{value:.11e}") + 0.0
 
 
 def _numbers(value, is_vector):
