@@ -87,8 +87,9 @@ Response Review::mark(const Json& marks) {
     const std::lock_guard lock(mutex_);
     for (const Checked& picture : pictures_) {
         const auto mark = marks.find(picture.name);
-        if (mark == marks.end() || !(*mark == "accept" || *mark == "reject" || *mark == "")) continue;
-        marks_[picture.name] = *mark;
+        if (mark == marks.end() || !mark->is_string()) continue;
+        const auto& word = mark->get_ref<const std::string&>();
+        if (word.empty() || word == "accept" || word == "reject") marks_[picture.name] = word;
     }
     return {};
 }
