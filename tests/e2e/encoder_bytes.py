@@ -44,7 +44,7 @@ FORMATS = [
     (".mkv CLEAR", [None], SIZES),
     (".gif", [None], SIZES),
 ]
-ENCODERS = re.compile(r"lib(x264|x265|SvtAv1Enc|aom|vpx|avcodec|avformat)")
+ENCODERS = re.compile(r"lib(x264|SvtAv1Enc|aom|vpx|avcodec)")
 
 
 def cases():
@@ -66,10 +66,15 @@ def render(corda, folder, ending, options, before=(), **environment):
     return video.read_bytes()
 
 
-def unwritten_reads(corda, folder, ending, options):
-    """What valgrind says of an encoder that uses memory that nothing wrote."""
+def faults_under_valgrind(corda, folder, ending, options, made):
+    """Other bytes than `made`, the hashes, and what valgrind says of an encoder that uses memory that nothing wrote.
+
+    Not of x265: its vector code loads more than it uses, of which valgrind follows only a part.
+    """
     report = os.path.join(folder, "valgrind.xml")
-    render(corda, folder, ending, options, ["valgrind", "-q", "--xml=yes", "--xml-file=" + report])
+    video = render(corda, folder, ending, options, ["valgrind", "-q", "--xml=yes", "--xml-file=" + report])
+    if hashlib.sha256(video).hexdigest() not in made:
+        yield "other bytes under valgrind"
     for error in xml.etree.ElementTree.parse(report).getroot().iter("error"):
         frames = [frame.findtext("obj") or "" for frame in error.find("stack").iter("frame")]
         if error.findtext("kind").startswith("Uninit") and ENCODERS.search(frames[0]):
@@ -89,7 +94,7 @@ def main():
             videos += 1
             faults = [] if len(made) == 1 else [f"{len(made)} different files"]
             if has_valgrind:
-                faults += sorted(set(unwritten_reads(corda, folder, ending, options)))
+                faults += sorted(set(faults_under_valgrind(corda, folder, ending, options, made)))
             for fault in faults:
                 print(f"{ending} {' '.join(options)}: {fault}")
             failed += bool(faults)
