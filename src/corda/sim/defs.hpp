@@ -67,6 +67,22 @@ struct MoveDef {
     friend bool operator==(const MoveDef&, const MoveDef&) = default;
 };
 
+/// A pinned particle that is free from a time on. No two of a body are for one pin.
+struct ReleaseDef {
+    std::uint32_t pin = 0;  ///< index of the particle, one of `pinned`
+    double time_s = 0.0;    ///< >= 0
+
+    friend bool operator==(const ReleaseDef&, const ReleaseDef&) = default;
+};
+
+/// A link that is gone from a time on. No two of a body are for one link.
+struct CutDef {
+    std::uint32_t link = 0;  ///< link k of a rope joins particles k and k + 1; of a net, the index of the bar
+    double time_s = 0.0;     ///< >= 0
+
+    friend bool operator==(const CutDef&, const CutDef&) = default;
+};
+
 /// The forces on all bodies of a scene, and its duration.
 struct WorldDef {
     Vec2 gravity_m_s2{0.0, -9.81};  ///< acceleration of every free particle; finite
@@ -98,7 +114,9 @@ struct RopeDef {
     /// Indices of the particles that never move or as `moves` say, each < points_m.size().
     std::vector<std::uint32_t> pinned{0};
     std::vector<MoveDef> moves = {};
-    double payload_kg = 0.0;  ///< added to the mass of the last particle; >= 0
+    std::vector<ReleaseDef> releases = {};
+    std::vector<CutDef> cuts = {};  ///< of a closed rope at most one
+    double payload_kg = 0.0;        ///< added to the mass of the last particle; >= 0
     /// Each particle is joined to the next 1 .. reach particles; >= 1. Bars of reach 1 are the rope's links.
     /// Longer ones are imaginary: they stiffen the rope, and only method `relaxation` can move them.
     int reach = 1;
@@ -132,6 +150,8 @@ struct NetDef {
     std::vector<std::uint32_t> pinned;
     MaterialDef material;
     std::vector<MoveDef> moves = {};
+    std::vector<ReleaseDef> releases = {};
+    std::vector<CutDef> cuts = {};  ///< of real bars
 };
 
 /// Method `exact`: adaptive and of high order.

@@ -50,6 +50,8 @@ class MovingFrame final : public Solver {
     }
     [[nodiscard]] std::uint64_t steps() const override { return inside_->steps(); }
     [[nodiscard]] std::vector<MethodDef> methods() const override { return inside_->methods(); }
+    void read_rest_lengths(std::vector<Bar>& bars) const override { inside_->read_rest_lengths(bars); }
+    [[nodiscard]] double margin_m() const override { return inside_->margin_m(); }
 
   private:
     /// Those of pins too.
@@ -72,19 +74,22 @@ class MovingFrame final : public Solver {
 
 }  // namespace
 
-TimeFunction displacement_of(const MoveDef& move) {
+TimeFunction displacement_of(const MoveDef& move, double start_s) {
     TimeFunction displacement;
     for (const WaveDef& wave : move.waves) displacement.add_wave(wave);
     displacement.shift(-1.0 * displacement(0.0));
     displacement.add_path(move.path);
+    if (start_s == 0.0) return displacement;
+    displacement = displacement.from(start_s);
+    displacement.shift(-1.0 * displacement(0.0));
     return displacement;
 }
 
 std::optional<TimeFunction> common_displacement(const System& body) {
     if (body.moves.empty()) return TimeFunction();
-    TimeFunction first = displacement_of(body.moves.front());
-    const bool are_alike =
-        std::ranges::all_of(body.moves, [&](const MoveDef& move) { return displacement_of(move) == first; });
+    TimeFunction first = displacement_of(body.moves.front(), body.start_s);
+    const bool are_alike = std::ranges::all_of(
+        body.moves, [&](const MoveDef& move) { return displacement_of(move, body.start_s) == first; });
     if (are_alike && (body.moves.size() == pin_count(body, body.bodies.front()) || first.empty()))
         return first;
     return std::nullopt;
@@ -94,7 +99,7 @@ std::vector<MovingPin> moving_pins(const System& body) {
     std::vector<MovingPin> pins;
     std::vector<TimeFunction> displacements(body.particle_count());
     for (const MoveDef& move : body.moves) {
-        const TimeFunction displacement = displacement_of(move);
+        const TimeFunction displacement = displacement_of(move, body.start_s);
         const TimeFunction velocity = displacement.derivative();
         displacements[move.pin] = displacement;
         pins.push_back({move.pin,

@@ -15,8 +15,8 @@
 
 namespace corda::sim {
 
-/// The displacement of a pin from its place at the start.
-[[nodiscard]] TimeFunction displacement_of(const MoveDef& move);
+/// The displacement of a pin from its place at `start_s`, at times counted from there.
+[[nodiscard]] TimeFunction displacement_of(const MoveDef& move, double start_s = 0.0);
 
 /// The displacement that all pins of a body have in common; 0 if none moves, empty if they move differently.
 [[nodiscard]] std::optional<TimeFunction> common_displacement(const System& body);

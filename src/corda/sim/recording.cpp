@@ -33,6 +33,7 @@ double speed_of_link(const System& system, const Body& /*body*/, std::size_t k, 
 }
 
 double strain_of_link(const System& system, const Body& body, std::size_t k, const State& state) {
+    if (!system.has_bar_at(k, state.time_s)) return 0.0;
     const auto [a, b, reach, rest_m] = system.bars[k];
     const double strain = length(state.x_m[b] - state.x_m[a], state.y_m[b] - state.y_m[a]) / rest_m - 1.0;
     return body.material.is_string ? std::max(0.0, strain) : strain;
@@ -143,7 +144,8 @@ Status Recording::advance(Simulation& run, const Timeline& timeline, const std::
 void Recording::add_to_histogram(const System& system, const State& state) {
     for (const Body& body : system.bodies) {
         for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k)
-            histogram_.add(kind_of(*quantity_).value(system, body, k, state));
+            if (system.has_bar_at(k, state.time_s))
+                histogram_.add(kind_of(*quantity_).value(system, body, k, state));
     }
 }
 

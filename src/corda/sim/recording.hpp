@@ -20,7 +20,7 @@ struct QuantityKind {
     const char* name = "";  ///< "tension", as in style.color_by
     const char* unit = "";  ///< takes a prefix, as in "kN"; empty: a bare number
     StateFields fields{};   ///< of a state, from which the value is computed
-    /// The value for bar `k` of a body; NaN if unknown.
+    /// The value for bar `k` of a body; NaN if unknown. A bar that is gone has neither tension nor strain.
     double (*value)(const System& system, const Body& body, std::size_t k, const State& state) = nullptr;
 };
 [[nodiscard]] const QuantityKind& kind_of(Quantity quantity);

@@ -10,10 +10,12 @@
 #include <utility>
 
 #include "corda/core/cancel.hpp"
+#include "corda/sim/events.hpp"
 #include "corda/sim/exact/chain_dynamics.hpp"
 #include "corda/sim/exact/exact.hpp"
 #include "corda/sim/exact/radau_chain.hpp"
 #include "corda/sim/moving_pins.hpp"
+#include "corda/sim/phases.hpp"
 #include "corda/sim/rattle/rattle.hpp"
 #include "corda/sim/relaxation/relaxation.hpp"
 #include "corda/sim/system.hpp"
@@ -59,6 +61,12 @@ void refuse_bars_without_length(const System& system) {
 /// Makes the one solver of a whole system.
 std::unique_ptr<Solver> make_solver_of(const System& system, const Forces& forces, const MethodDef& method,
                                        double frame_interval_s) {
+    if (system.has_events())
+        return solve_in_phases(
+            system, forces, method,
+            [=](const System& part, const Forces& there, const MethodDef& by, std::span<const std::size_t>) {
+                return make_solver_of(part, there, by, frame_interval_s);
+            });
     if (!system.moves.empty() && common_displacement(system))
         return solve_in_frame_of_pins(system, forces, method, [&](const System& body, const Forces& there) {
             return make_solver_of(body, there, method, frame_interval_s);
@@ -248,7 +256,8 @@ std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces,
     }
     // `relaxation` fills the lanes of a processor with several small bodies.
     const bool relaxes_all =
-        system.moves.empty() && std::ranges::all_of(methods, [&](const MethodDef& method) {
+        system.moves.empty() && !system.has_events() &&
+        std::ranges::all_of(methods, [&](const MethodDef& method) {
             return std::holds_alternative<RelaxationDef>(method) && method == methods.front();
         });
     if (count == 1 || relaxes_all) return make_solver_of(system, forces, methods.front(), frame_interval_s);
@@ -307,7 +316,9 @@ double implicit_steps_1_s(const System& system, const Body& body, const Forces& 
 }
 
 LoadMeter::LoadMeter(const System& system) {
-    if (!system.bends.empty()) bends_.emplace(system, 0, system.particle_count());
+    if (system.bends.empty()) return;
+    event_s_ = event_times_s(system);
+    bends_.emplace(system, 0, system.particle_count());
 }
 
 void LoadMeter::find_forces(const System& system, const State& state, std::span<const double> tension_n) {
@@ -323,6 +334,11 @@ void LoadMeter::find_forces(const System& system, const State& state, std::span<
         fx_n_[b] -= pull_n.x;
         fy_n_[b] -= pull_n.y;
     }
+    const auto next = std::ranges::upper_bound(event_s_, state.time_s);
+    if (const auto phase = static_cast<std::size_t>(next - event_s_.begin()); phase != phase_) {
+        phase_ = phase;
+        bends_.emplace(phase == 0 ? system : from_event_on(system, *(next - 1)), 0, system.particle_count());
+    }
     if (bends_) bends_->add_bend_forces({state.x_m.data(), state.y_m.data()}, {fx_n_.data(), fy_n_.data()});
 }
 
@@ -335,7 +351,8 @@ std::optional<Loads> LoadMeter::of(const System& system, const State& state,
     }
     find_forces(system, state, tension_n);
     for (std::size_t i = 0; i < system.particle_count(); ++i) {
-        if (system.is_pinned(i)) loads.pin_force_n = std::max(loads.pin_force_n, length(fx_n_[i], fy_n_[i]));
+        if (system.is_pinned_at(i, state.time_s))
+            loads.pin_force_n = std::max(loads.pin_force_n, length(fx_n_[i], fy_n_[i]));
     }
     return loads;
 }
@@ -344,8 +361,10 @@ double LoadMeter::support_power_w(const System& system, const State& state,
                                   std::span<const double> tension_n) {
     find_forces(system, state, tension_n);
     double power_w = 0.0;
-    for (const MoveDef& move : system.moves)
+    for (const MoveDef& move : system.moves) {
+        if (!system.is_pinned_at(move.pin, state.time_s)) continue;
         power_w -= dot({fx_n_[move.pin], fy_n_[move.pin]}, {state.vx_m_s[move.pin], state.vy_m_s[move.pin]});
+    }
     return power_w;
 }
 

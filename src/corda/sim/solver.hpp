@@ -79,6 +79,13 @@ class Solver : NonCopyable {
     /// with the same bits.
     [[nodiscard]] virtual std::vector<MethodDef> methods() const = 0;
 
+    /// Writes the rest lengths that it has given to bars, to an array of all of them.
+    virtual void read_rest_lengths(std::vector<Bar>& /*bars*/) const {}
+
+    /// Error of positions in metres from which snaps between the last two requested times may have happened
+    /// in another order, or not at all; infinite if there is nothing to decide.
+    [[nodiscard]] virtual double margin_m() const { return std::numeric_limits<double>::infinity(); }
+
   protected:
     Solver(double energy_scale_j, bool conserves_energy)
         : energy_scale_j_(energy_scale_j), conserves_energy_(conserves_energy) {}
@@ -135,6 +142,8 @@ class LoadMeter {
   private:
     void find_forces(const System& system, const State& state, std::span<const double> tension_n);
 
+    std::vector<double> event_s_;         ///< when bends_ are others
+    std::size_t phase_ = 0;               ///< of bends_: events before it
     std::optional<ElasticForces> bends_;  ///< empty without bends
     std::vector<double> fx_n_;            ///< on particles by bars and bends
     std::vector<double> fy_n_;

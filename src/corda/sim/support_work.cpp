@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "corda/sim/events.hpp"
+#include "corda/sim/forces/forces.hpp"
 #include "corda/sim/moving_pins.hpp"
 
 namespace corda::sim {
@@ -38,6 +40,8 @@ SupportWork::SupportWork(const System& system, const WorldDef& world, std::span<
                          double frame_interval_s)
     : run_(system, world, methods, frame_interval_s),
       meter_(system),
+      weight_m_s2_(Forces(world).weight_m_s2()),
+      event_s_(event_times_s(system)),
       longest_s_(most_of_part_s(system)),
       most_s_(longest_s_) {
     run_.set_outputs({.velocities = true, .tensions = true, .unknown_tensions = true});
@@ -49,7 +53,9 @@ SupportWork::SupportWork(const System& system, const WorldDef& world, std::span<
 
 double SupportWork::until_j(double time_s) {
     while (until_s_ < time_s) {
-        const double left_s = time_s - until_s_;
+        const auto event = std::ranges::upper_bound(event_s_, until_s_);
+        const double end_s = event == event_s_.end() ? time_s : std::min(*event, time_s);
+        const double left_s = end_s - until_s_;
         const double part_s = longest_s_ < left_s ? std::min(longest_s_, 0.5 * left_s) : left_s;
         const std::uint64_t steps = run_.diagnostics().steps;
         for (const auto& [point, weight] : kGauss) {
@@ -60,9 +66,24 @@ double SupportWork::until_j(double time_s) {
         }
         const auto taken = static_cast<double>(run_.diagnostics().steps - steps);
         longest_s_ = std::min(part_s / std::max(0.5, kPartsPerStep * taken), most_s_);
-        until_s_ = part_s == left_s ? time_s : until_s_ + part_s;
+        until_s_ = part_s == left_s ? end_s : until_s_ + part_s;
     }
-    return work_j_;
+    return work_j_ + on_masses_j(time_s);
+}
+
+double SupportWork::on_masses_j(double time_s) const {
+    const System& system = run_.system();
+    double work_j = 0.0;
+    for (const MoveDef& move : system.moves) {
+        if (system.stays_pinned(move.pin)) continue;
+        const TimeFunction displacement = displacement_of(move);
+        const Vec2 start_m_s = displacement.derivative()(0.0);
+        const double until_s = std::min(time_s, system.release_s[move.pin]);
+        const Vec2 velocity_m_s = displacement.derivative()(until_s);
+        const double kinetic = 0.5 * (dot(velocity_m_s, velocity_m_s) - dot(start_m_s, start_m_s));
+        work_j += system.mass_kg[move.pin] * (kinetic - dot(weight_m_s2_, displacement(until_s)));
+    }
+    return work_j;
 }
 
 }  // namespace corda::sim

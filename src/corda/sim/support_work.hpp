@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "corda/sim/simulation.hpp"
 #include "corda/sim/solver.hpp"
@@ -21,8 +22,13 @@ class SupportWork {
     [[nodiscard]] double until_j(double time_s);
 
   private:
+    /// On the masses of pins that will be let go, whose energy counts from the start.
+    [[nodiscard]] double on_masses_j(double time_s) const;
+
     Simulation run_;
     LoadMeter meter_;
+    Vec2 weight_m_s2_;
+    std::vector<double> event_s_;  ///< where the power jumps
     double work_j_ = 0.0;
     double until_s_ = 0.0;
     double longest_s_;  ///< over which the next part is integrated

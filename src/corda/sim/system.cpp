@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "corda/sim/defs.hpp"
+#include "corda/sim/events.hpp"
 #include "corda/sim/forces/forces.hpp"
 #include "corda/sim/moving_pins.hpp"
 
@@ -17,6 +18,10 @@ namespace corda {
 namespace {
 
 using sim::is_finite;
+
+using sim::kNoEvent;
+
+constexpr const char* kBadCuts = "cuts names no link, one twice or a time before 0 s";
 
 [[noreturn]] void fail(const std::string& what, const std::string& problem) {
     throw Refusal(Refusal::Reason::kDefinition, what + ": " + problem);
@@ -66,6 +71,8 @@ void check_body(const BodyDef& def, const std::string& what) {
     for (const std::uint32_t index : def.pinned)
         if (index >= count)
             fail(what, "pinned names particle " + std::to_string(index) + " of " + std::to_string(count));
+    require(sim::are_valid(def.releases, def.pinned), what,
+            "releases names no pin, one twice or a time before 0 s");
     check_moves(def.moves, def.pinned, what);
     const double compliance = def.material.compliance_1_n;
     require(compliance >= 0.0 && std::isfinite(compliance), what, "material.compliance_1_n is not >= 0");
@@ -82,6 +89,8 @@ void check(const RopeDef& rope, const std::string& what) {
     require(rope.rest_m.empty() || rope.rest_m.size() == links, what,
             "rest_m needs one value per link, or none");
     require(std::ranges::all_of(rope.rest_m, is_positive), what, "rest_m has a value that is not > 0");
+    require(sim::are_valid(rope.cuts, links), what, kBadCuts);
+    require(!rope.closed || rope.cuts.size() <= 1, what, "cuts has more than one link of a closed rope");
 }
 
 void check(const NetDef& net, const std::string& what) {
@@ -95,6 +104,8 @@ void check(const NetDef& net, const std::string& what) {
         require(!(bar.is_real && imaginary_ones_follow), what, "bars has a real bar behind an imaginary one");
         imaginary_ones_follow = imaginary_ones_follow || !bar.is_real;
     }
+    const auto links = static_cast<std::size_t>(std::ranges::count_if(net.bars, &NetBar::is_real));
+    require(sim::are_valid(net.cuts, links), what, kBadCuts);
 }
 
 /// Appends the data common to ropes and nets: origin, particles and pins.
@@ -125,6 +136,10 @@ Body append_particles(const BodyDef& def, System& system) {
         system.vx_m_s[move.pin] = velocity_m_s.x;
         system.vy_m_s[move.pin] = velocity_m_s.y;
         system.moves.push_back(std::move(move));
+    }
+    for (const auto& [pin, time_s] : def.releases) {
+        system.release_s.resize(first + count, kNoEvent);
+        system.release_s[first + pin] = time_s;
     }
     Body body;
     body.first_particle = first;
@@ -178,6 +193,9 @@ void append_bends(const RopeDef& rope, const Body& body, System& system) {
         const Bar& after = links[(k + 1) % body.link_count];
         system.bends.push_back(
             {before.a, before.b, after.b, rope.bending_n_m2 / (0.5 * (before.rest_m + after.rest_m))});
+        for (const auto& [link, time_s] : rope.cuts)
+            if (link == k || link == (k + 1) % body.link_count)
+                system.bends.back().cut_s = std::min(system.bends.back().cut_s, time_s);
     }
 }
 
@@ -186,6 +204,7 @@ void append(const RopeDef& def, System& system) {
     const RopeDef& rope = pulled ? *pulled : def;
     Body body = append_particles(rope, system);
     append_bars(rope, body, system);
+    sim::add_cuts(rope.cuts, body, system);
     append_bends(rope, body, system);
     system.bodies.push_back(body);
 }
@@ -201,6 +220,7 @@ void append(const NetDef& net, System& system) {
     }
     body.is_chain = false;
     body.is_net = true;
+    sim::add_cuts(net.cuts, body, system);
     system.bodies.push_back(body);
 }
 
@@ -234,6 +254,12 @@ System alone(const System& system, const Body& body) {
         move.pin -= shift;
         part.moves.push_back(std::move(move));
     }
+    // Those of other bodies are none of its own.
+    part.release_s = slice(system.release_s, first, system.release_s.empty() ? 0 : count);
+    part.cut_s = slice(system.cut_s, body.first_bar, system.cut_s.empty() ? 0 : body.bar_count);
+    const auto is_never = [](double time_s) { return time_s == kNoEvent; };
+    if (std::ranges::all_of(part.release_s, is_never)) part.release_s.clear();
+    if (std::ranges::all_of(part.cut_s, is_never)) part.cut_s.clear();
     part.bodies = {body};
     part.bodies.front().first_particle = 0;
     part.bodies.front().first_bar = 0;
@@ -371,6 +397,8 @@ System build_system(std::span<const RopeDef> ropes, std::span<const NetDef> nets
     system.origin_m = ropes.empty() ? nets.front().origin_m : ropes.front().origin_m;
     for (const RopeDef& rope : ropes) append(rope, system);
     for (const NetDef& net : nets) append(net, system);
+    if (!system.release_s.empty()) system.release_s.resize(system.particle_count(), kNoEvent);
+    if (!system.cut_s.empty()) system.cut_s.resize(system.bars.size(), kNoEvent);
     return system;
 }
 
@@ -398,7 +426,8 @@ void for_each_body(const System& system, const std::function<void(const System&,
         System part = alone(system, body);
         const auto shift = static_cast<std::uint32_t>(body.first_particle);
         for (; bend != system.bends.end() && bend->b < body.first_particle + body.particle_count; ++bend)
-            part.bends.push_back({bend->a - shift, bend->b - shift, bend->c - shift, bend->stiffness_n_m});
+            part.bends.push_back(
+                {bend->a - shift, bend->b - shift, bend->c - shift, bend->stiffness_n_m, bend->cut_s});
         try {
             use(part, i);
         } catch (const Refusal& refused) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -45,9 +46,10 @@ struct Bend {
     std::uint32_t b = 0;
     std::uint32_t c = 0;
     double stiffness_n_m = 0.0;  ///< E I over the mean of the two bars' rest lengths
+    double cut_s = std::numeric_limits<double>::infinity();  ///< when one of the two is cut
 };
 
-/// All particles and bars of a scene at t = 0. Arrays have one entry per particle.
+/// All particles and bars of a scene at its start. Arrays have one entry per particle.
 ///
 /// Positions are relative to `origin_m`, the first body's own origin, so that a scene far from (0, 0) is
 /// solved with the same bits.
@@ -61,13 +63,31 @@ struct System {
     std::vector<double> inverse_mass_1_kg;  ///< 0 means pinned
     /// In the order of relaxation: body by body, all bars of reach 1, then all of reach 2, ...
     std::vector<Bar> bars;
-    std::vector<Bend> bends;          ///< empty unless a rope resists bending
-    std::vector<Body> bodies;         ///< ropes, then nets
-    std::vector<MoveDef> moves = {};  ///< of pinned particles of the system
+    std::vector<Bend> bends;             ///< empty unless a rope resists bending
+    std::vector<Body> bodies;            ///< ropes, then nets
+    std::vector<MoveDef> moves = {};     ///< of pinned particles of the system
+    std::vector<double> release_s = {};  ///< per particle, when it is let go; empty: none is
+    std::vector<double> cut_s = {};      ///< per bar, when it is gone; empty: none is
+    double start_s = 0.0;                ///< the time of this state, from which a solver counts its own
 
     [[nodiscard]] std::size_t particle_count() const { return x_m.size(); }
     [[nodiscard]] std::size_t link_count() const;
+    /// At the start.
     [[nodiscard]] bool is_pinned(std::size_t particle) const { return inverse_mass_1_kg[particle] == 0.0; }
+
+    /// Pins are let go or bars cut.
+    [[nodiscard]] bool has_events() const { return !release_s.empty() || !cut_s.empty(); }
+    /// What is let go or cut is free or gone at that very time.
+    [[nodiscard]] bool is_pinned_at(std::size_t particle, double time_s) const {
+        return is_pinned(particle) && (release_s.empty() || time_s < release_s[particle]);
+    }
+    [[nodiscard]] bool has_bar_at(std::size_t bar, double time_s) const {
+        return cut_s.empty() || time_s < cut_s[bar];
+    }
+    /// Pinned, and never let go.
+    [[nodiscard]] bool stays_pinned(std::size_t particle) const {
+        return is_pinned_at(particle, std::numeric_limits<double>::max());
+    }
 };
 
 /// A range of consecutive links of a rope.

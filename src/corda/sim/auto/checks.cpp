@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numeric>
+#include <span>
 #include <vector>
 
 #include "corda/core/cancel.hpp"
@@ -13,6 +15,7 @@
 #include "corda/sim/defs.hpp"
 #include "corda/sim/exact/string/part.hpp"
 #include "corda/sim/moving_pins.hpp"
+#include "corda/sim/phases.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::sim {
@@ -92,21 +95,15 @@ class Checks::Check : NonCopyable {
         const MaterialDef& material = system.bodies.front().material;
         const auto* exact = std::get_if<ExactDef>(&method);
         if (exact != nullptr && material.is_string && material.compliance_1_n == 0.0) {
-            const auto make = [&](const System& body, const Forces& there) {
-                auto string = std::make_unique<StringPart>(
-                    body, there, exact->tolerance,
-                    longer_m.empty() ? rounding_of_snaps_m(system, number) : longer_m);
-                string_ = string.get();
-                return string;
-            };
-            solver_ = solve_in_frame_of_pins(system_, turned_forces, method, make);
+            solver_ = solve_string(turned_forces, method,
+                                   longer_m.empty() ? rounding_of_snaps_m(system, number) : longer_m);
         } else {
             solver_ = make_solver(system_, turned_forces, {&method, 1}, frame_interval_s);
         }
         state_ = {0.0, system_.x_m, system_.y_m};
     }
 
-    [[nodiscard]] double margin_m() const { return string_ == nullptr ? HUGE_VAL : string_->margin_m(); }
+    [[nodiscard]] double margin_m() const { return solver_->margin_m(); }
 
     /// kDiverged also if it has branched, or ended because it would take more work than this.
     Status advance_to(double time_s, double most_updates) {
@@ -131,10 +128,30 @@ class Checks::Check : NonCopyable {
     static constexpr std::array<Vec2, kMaxCount> kTurns{
         {{0.8, 0.6}, {5.0 / 13.0, 12.0 / 13.0}, {24.0 / 25.0, 7.0 / 25.0}}};
 
+    /// A solver of system_, a string of rigid links that come taut so much later.
+    [[nodiscard]] std::unique_ptr<Solver> solve_string(const Forces& forces, const MethodDef& method,
+                                                       const std::vector<double>& longer_m) const {
+        std::vector<double> rest_m;
+        for (const Bar& bar : system_.bars) rest_m.push_back(bar.rest_m);
+        const auto make_part = [=, tolerance = std::get<ExactDef>(method).tolerance](
+                                   const System& part, const Forces& there, const MethodDef& by,
+                                   std::span<const std::size_t> bars) {
+            std::vector<double> own_m;
+            for (std::size_t j = 0; j < bars.size(); ++j)  // a former phase may have lengthened it
+                own_m.push_back(part.bars[j].rest_m == rest_m[bars[j]] ? longer_m[bars[j]] : 0.0);
+            return solve_in_frame_of_pins(part, there, by, [&](const System& body, const Forces& in_frame) {
+                return std::make_unique<StringPart>(body, in_frame, tolerance, own_m);
+            });
+        };
+        if (system_.has_events()) return solve_in_phases(system_, forces, method, make_part);
+        std::vector<std::size_t> all(system_.bars.size());
+        std::iota(all.begin(), all.end(), std::size_t{0});
+        return make_part(system_, forces, method, all);
+    }
+
     Vec2 cosine_sine_;  ///< of the angle by which it is turned
     System system_;
     std::unique_ptr<Solver> solver_;
-    const StringPart* string_ = nullptr;  ///< solver_, if it is one
     State state_;
     Meter work_;
     bool has_ended_ = false;

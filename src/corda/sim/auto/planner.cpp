@@ -80,6 +80,15 @@ constexpr double kImplicitCheck = 0.25;
 
 constexpr double kFirstImplicitSteps = 300.0;  ///< short ones, which a start may need
 
+/// The step that `rattle` of an order takes by default.
+double default_step_s(const System& system, const WorldDef& world, int order) {
+    const MethodDef rattle = RattleDef{order};
+    if (!system.has_events())
+        return Rattle(system, world, RattleDef{order}, kNominalIntervalSeconds).step_s();
+    const auto solver = make_solver(system, world, {&rattle, 1}, kNominalIntervalSeconds);
+    return fixed_step_s(solver->methods().front()).value_or(kNominalIntervalSeconds);
+}
+
 /// Of `rattle` in a step.
 double stages_of(int order) {
     return static_cast<double>(composition(order).stages.size());
@@ -134,7 +143,7 @@ std::vector<Candidate> exact_trials(const System& system, const WorldDef& world,
                                    static_cast<int>(i)));
     }
     if (is_net && !is_rigid_net && !refusal(system, world, RattleDef{kCheapOrder}, kNominalIntervalSeconds)) {
-        const double step_s = Rattle(system, world, RattleDef{kCheapOrder}, kNominalIntervalSeconds).step_s();
+        const double step_s = default_step_s(system, world, kCheapOrder);
         const std::size_t check = std::min(digits + kNextDigits, tightest.check);
         trials.push_back(candidate(RattleDef{kCheapOrder, step_s}, ExactDef{kTolerance[check]}, 1.0,
                                    static_cast<int>(digits) - 1));
@@ -159,7 +168,7 @@ std::vector<Candidate> graph_trials(const System& system, const WorldDef& world,
     for (const Rung& rung : kGraphLadder) {
         if (rung.order != order) {  // a large net takes seconds to prepare
             order = rung.order;
-            stable_s = Rattle(system, world, RattleDef{order}, kNominalIntervalSeconds).step_s();
+            stable_s = default_step_s(system, world, order);
         }
         const double step_s = stable_s / static_cast<double>(1 << rung.halvings);
         trials.push_back(candidate(RattleDef{rung.order, step_s},

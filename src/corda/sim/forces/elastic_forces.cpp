@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "corda/sim/defs.hpp"
+#include "corda/sim/events.hpp"
 #include "corda/sim/forces/forces.hpp"
 
 namespace corda::sim {
@@ -35,6 +36,14 @@ Along along(const double* x_m, const double* y_m, std::uint32_t from, std::uint3
     return {distance_m, inverse, dx * inverse, dy * inverse};
 }
 
+/// With what joins pins that will be let go.
+ElasticForces elastic_of_all_phases(const System& system) {
+    if (system.release_s.empty()) return {system, 0, system.particle_count()};
+    System free = from_event_on(system, std::numeric_limits<double>::max());
+    free.start_s = system.start_s;
+    return {free, 0, free.particle_count()};
+}
+
 }  // namespace
 
 ElasticForces::ElasticForces(const System& system, std::size_t first_particle, std::size_t particle_count)
@@ -54,10 +63,12 @@ void ElasticForces::add_springs(const System& system, const Body& body) {
     for (std::size_t k = body.first_bar; k < body.first_bar + body.bar_count; ++k) {
         const Bar& bar = system.bars[k];
         if (system.is_pinned(bar.a) && system.is_pinned(bar.b)) continue;
+        if (!system.has_bar_at(k, system.start_s)) continue;
         assert(bar.rest_m > 0.0);
         springs_.push_back({k, static_cast<std::uint32_t>(bar.a - first_particle_),
                             static_cast<std::uint32_t>(bar.b - first_particle_), bar.rest_m,
                             1.0 / (body.material.compliance_1_n * bar.rest_m), least_m});
+        if (!system.cut_s.empty()) spring_cut_s_.push_back(system.cut_s[k]);
     }
 }
 
@@ -70,11 +81,13 @@ void ElasticForces::add_joints(const System& system, std::size_t particle_count)
     for (; next != system.bends.end() && next->b < first_particle_ + particle_count; ++next) {
         const Bend& bend = *next;
         if (system.is_pinned(bend.a) && system.is_pinned(bend.b) && system.is_pinned(bend.c)) continue;
+        if (bend.cut_s <= system.start_s) continue;
         joints_.push_back({static_cast<std::uint32_t>(bend.a - first_particle_),
                            static_cast<std::uint32_t>(bend.b - first_particle_),
                            static_cast<std::uint32_t>(bend.c - first_particle_), bend.stiffness_n_m,
                            along(x_m, y_m, bend.a, bend.b).length_m,
                            along(x_m, y_m, bend.b, bend.c).length_m});
+        if (!system.cut_s.empty()) joint_cut_s_.push_back(bend.cut_s);
     }
 }
 
@@ -153,14 +166,18 @@ double ElasticForces::common_square_frequency() const {
     return spring_square_frequency_ + kCommonBend * joint_square_frequency_;
 }
 
-double ElasticForces::energy_j(const double* x_m, const double* y_m) const {
+double ElasticForces::energy_j(const double* x_m, const double* y_m, double time_s) const {
     double energy_j = 0.0;
-    for (const Spring& spring : springs_) {
+    for (std::size_t k = 0; k < springs_.size(); ++k) {
+        if (!spring_cut_s_.empty() && spring_cut_s_[k] <= time_s) continue;
+        const Spring& spring = springs_[k];
         const double stretch_m =
             std::max(along(x_m, y_m, spring.a, spring.b).length_m - spring.rest_m, spring.least_stretch_m);
         energy_j += 0.5 * spring.stiffness_n_m * (stretch_m * stretch_m);
     }
-    for (const Joint& joint : joints_) {
+    for (std::size_t k = 0; k < joints_.size(); ++k) {
+        if (!joint_cut_s_.empty() && joint_cut_s_[k] <= time_s) continue;
+        const Joint& joint = joints_[k];
         const Along u = along(x_m, y_m, joint.a, joint.b);
         const Along v = along(x_m, y_m, joint.b, joint.c);
         // 1 - u . v without cancellation.
@@ -180,7 +197,7 @@ void ElasticForces::tensions(const double* x_m, const double* y_m, std::vector<d
 }
 
 EnergyMeter::EnergyMeter(const System& system, const Forces& forces, std::span<const MethodDef> methods)
-    : system_(&system), weight_n_(forces.on_particles(system)), elastic_(system, 0, system.particle_count()) {
+    : system_(&system), weight_n_(forces.on_particles(system)), elastic_(elastic_of_all_phases(system)) {
     for (std::size_t b = 0; b < system.bodies.size(); ++b) {
         const auto* relaxation = std::get_if<RelaxationDef>(&methods[methods.size() == 1 ? 0 : b]);
         if (relaxation == nullptr || !relaxation->force_n) continue;
@@ -193,13 +210,13 @@ EnergyMeter::EnergyMeter(const System& system, const Forces& forces, std::span<c
 Energy EnergyMeter::of(const State& state) const {
     Energy energy;
     for (std::size_t i = 0; i < system_->particle_count(); ++i) {
-        if (system_->is_pinned(i)) continue;
+        if (system_->stays_pinned(i)) continue;
         const double vx = state.vx_m_s[i];
         const double vy = state.vy_m_s[i];
         energy.kinetic_j += 0.5 * system_->mass_kg[i] * (vx * vx + vy * vy);
         energy.weight_j -= weight_n_[i].x * state.x_m[i] + weight_n_[i].y * state.y_m[i];
     }
-    energy.elastic_j = elastic_.energy_j(state.x_m.data(), state.y_m.data());
+    energy.elastic_j = elastic_.energy_j(state.x_m.data(), state.y_m.data(), state.time_s);
     return energy;
 }
 

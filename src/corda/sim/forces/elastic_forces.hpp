@@ -27,7 +27,7 @@ class ElasticForces {
   public:
     /// Of the bars of stretching bodies and of all bends among the particles `first_particle` ..
     /// `first_particle + particle_count - 1` of the system, which are whole bodies. Bars and bends that join
-    /// pinned particles alone never move and are left out.
+    /// pinned particles alone never move and are left out, as are those that are gone at its start.
     ElasticForces(const System& system, std::size_t first_particle, std::size_t particle_count);
 
     [[nodiscard]] bool empty() const { return springs_.empty() && joints_.empty(); }
@@ -44,7 +44,8 @@ class ElasticForces {
     /// 0.2 radians.
     [[nodiscard]] double common_square_frequency() const;
 
-    [[nodiscard]] double energy_j(const double* x_m, const double* y_m) const;
+    /// Of those that are not gone by `time_s`.
+    [[nodiscard]] double energy_j(const double* x_m, const double* y_m, double time_s = 0.0) const;
 
     /// Writes the tensions of the bars that stretch, in N, to an array of all bars of the system.
     void tensions(const double* x_m, const double* y_m, std::vector<double>& tension_n) const;
@@ -73,13 +74,16 @@ class ElasticForces {
     std::size_t first_particle_ = 0;
     std::vector<Spring> springs_;
     std::vector<Joint> joints_;
+    std::vector<double> spring_cut_s_;  ///< when each is gone; empty if none ever is
+    std::vector<double> joint_cut_s_;
     /// Gershgorin's bounds for bars of at least half of their rest lengths, and for straight joints of the
     /// initial lengths.
     double spring_square_frequency_ = 0.0;
     double joint_square_frequency_ = 0.0;
 };
 
-/// Computes the energy of states; that of the weight is 0 at the origin of the system.
+/// Computes the energy of states; that of the weight is 0 at the origin of the system. A pin that will be let
+/// go counts as a free particle from the start, so that its release changes no energy.
 class EnergyMeter {
   public:
     /// `methods`: one per body of the system, or one for all. The system must outlive it.

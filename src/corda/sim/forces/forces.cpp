@@ -118,8 +118,14 @@ Forces Forces::from(double time_s) const {
     return forces;
 }
 
+Forces Forces::until(double time_s) const {
+    Forces forces = *this;
+    forces.end_s_ = zero_s_ + time_s;
+    return forces;
+}
+
 Forces Forces::seen_from(const TimeFunction& displacement) const {
-    const TimeFunction velocity = displacement.derivative();
+    const TimeFunction velocity = displacement.derivative().from(-zero_s_);
     Forces forces = *this;
     forces.sum_.change_m_s2.add(-1.0, velocity.derivative());
     forces.sum_.change_m_s2.add(-sum_.drag_1_s, velocity);
@@ -131,6 +137,7 @@ Forces Forces::turned(Vec2 cosine_sine) const {
     Forces forces(ForceTerm{sim::turned(sum_.weight_m_s2, cosine_sine), sum_.drag_1_s,
                             sim::turned(sum_.push_m_s2, cosine_sine), sum_.change_m_s2.turned(cosine_sine)});
     forces.zero_s_ = zero_s_;
+    forces.end_s_ = end_s_;
     return forces;
 }
 
@@ -157,7 +164,7 @@ double Forces::inverse_timescale_1_s(double length_m, double speed_m_s) const {
 std::vector<Vec2> Forces::on_particles(const System& system) const {
     std::vector<Vec2> force_n(system.particle_count());
     for (std::size_t i = 0; i < force_n.size(); ++i) {
-        if (!system.is_pinned(i)) force_n[i] = system.mass_kg[i] * sum_.weight_m_s2;
+        if (!system.stays_pinned(i)) force_n[i] = system.mass_kg[i] * sum_.weight_m_s2;
     }
     return force_n;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -55,16 +57,20 @@ class Forces {
     [[nodiscard]] bool depend_on_time() const { return !sum_.change_m_s2.empty(); }
     /// The series of uniform_m_s2() in (t - time_s) / unit_s: as many coefficients as fit.
     void expand(double time_s, double unit_s, std::span<Vec2> coefficients) const;
-    /// The first time after `time_s` at which the third derivative of a path jumps and steps should end;
-    /// infinite if there is none.
+    /// The first time after `time_s` at which the third derivative of a path jumps or that until() gives,
+    /// where steps should end; infinite if there is none.
     [[nodiscard]] double next_key_s(double time_s) const {
-        return sum_.change_m_s2.next_key_s(zero_s_ + time_s) - zero_s_;
+        const double now_s = zero_s_ + time_s;
+        return std::min(sum_.change_m_s2.next_key_s(now_s), is_reached(end_s_, now_s) ? kNever : end_s_) -
+               zero_s_;
     }
     /// The largest angular frequency of the waves in them, 1/s; 0 without any.
     [[nodiscard]] double frequency_1_s() const { return sum_.change_m_s2.frequency_1_s(); }
     /// The same forces with times counted from `time_s`, which is the time set.
     [[nodiscard]] Forces from(double time_s) const;
-    /// The forces on particles seen from a frame that is displaced like this.
+    /// The same forces, for a motion that ends at `time_s`.
+    [[nodiscard]] Forces until(double time_s) const;
+    /// The forces on particles seen from a frame that is displaced like this, at times counted alike.
     [[nodiscard]] Forces seen_from(const TimeFunction& displacement) const;
     /// All forces turned by the angle of this cosine and sine.
     [[nodiscard]] Forces turned(Vec2 cosine_sine) const;
@@ -91,14 +97,17 @@ class Forces {
     /// Potential energy per mass in J/kg; 0 at the origin.
     [[nodiscard]] double potential_j_kg(Vec2 position_m) const { return -dot(sum_.weight_m_s2, position_m); }
 
-    /// The weight in newtons of each particle of a system; 0 for a pinned one.
+    /// The weight in newtons of each particle of a system; 0 for one that stays pinned.
     [[nodiscard]] std::vector<Vec2> on_particles(const System& system) const;
 
   private:
     void measure();
 
+    static constexpr double kNever = std::numeric_limits<double>::infinity();
+
     ForceTerm sum_;
-    double zero_s_ = 0.0;  ///< the time from which the others are counted
+    double zero_s_ = 0.0;    ///< the time from which the others are counted
+    double end_s_ = kNever;  ///< not counted from it
     Vec2 uniform_m_s2_;
     double strength_m_s2_ = 0.0;
 };

@@ -30,12 +30,6 @@ CosineSine<double> cosine_sine_of_turns(double turns) {
     }
 }
 
-/// A key counts as reached from a few roundings before it on, because times are sums of steps.
-bool is_reached(double key_s, double time_s) {
-    constexpr double kFewRoundings = 4.0 * std::numeric_limits<double>::epsilon();
-    return key_s <= time_s + kFewRoundings * std::abs(time_s);
-}
-
 }  // namespace
 
 void TimeFunction::add_wave(const WaveDef& wave) {
@@ -55,6 +49,13 @@ void TimeFunction::add_path(std::span<const PathKeyDef> keys) {
         piece.term[4] = -15.0 * way;
         piece.term[5] = 6.0 * way;
     }
+}
+
+TimeFunction TimeFunction::from(double time_s) const {
+    TimeFunction result = *this;
+    for (Wave& wave : result.waves_) wave.turns += wave.frequency_hz * time_s;
+    for (Piece& piece : result.pieces_) piece.start_s -= time_s;
+    return result;
 }
 
 void TimeFunction::add(double factor, const TimeFunction& other) {

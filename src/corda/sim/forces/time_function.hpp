@@ -1,13 +1,21 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "corda/sim/defs.hpp"
 
 namespace corda::sim {
+
+/// A key counts as reached from a few roundings before it on, because times are sums of steps.
+[[nodiscard]] inline bool is_reached(double key_s, double time_s) {
+    constexpr double kFewRoundings = 4.0 * std::numeric_limits<double>::epsilon();
+    return key_s <= time_s + kFewRoundings * std::abs(time_s);
+}
 
 /// A vector that depends on time, as plain data: a constant, waves and a polynomial from each key of a path
 /// to the next. Its only operations are +, -, * and /, so it has the same bits on every machine.
@@ -22,6 +30,8 @@ class TimeFunction {
     void add_path(std::span<const PathKeyDef> keys);
     /// Adds a constant.
     void shift(Vec2 by) { constant_ = constant_ + by; }
+    /// The same function of times counted from `time_s`.
+    [[nodiscard]] TimeFunction from(double time_s) const;
     /// Adds a multiple of a function, which has the keys of this one or none, unless this one has none.
     void add(double factor, const TimeFunction& other);
 

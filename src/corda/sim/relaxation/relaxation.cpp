@@ -101,6 +101,7 @@ Relaxation::Relaxation(const System& system, const Forces& forces, const Relaxat
       mass_kg_(system.mass_kg),
       force_n_(forces_on_particles(system, forces, def)),
       forces_(forces),
+      goes_on_(system.start_s > 0.0),
       pins_(moving_pins(system)) {
     assert(step_s_ > 0.0 && def.sweeps >= 1);
     def_.step_s = step_s_;
@@ -180,8 +181,9 @@ void Relaxation::set_pushes() {
 
 void Relaxation::advance(std::uint64_t steps) {
     const std::size_t size = motion_.position_m.size();
-    // The first step is Euler's: its move, h v(0), is known from the start.
-    const bool starts_updated = step_ == 0;
+    // The first step is Euler's: its move, h v(0), is known from the start. Later phases go on with the move
+    // of the last one.
+    const bool starts_updated = step_ == 0 && !goes_on_;
     if (starts_updated) {
         for (std::size_t k = 0; k < size; ++k) {
             RelaxationMove& verlet = motion_.moves[k / 2];

@@ -49,6 +49,7 @@ class Relaxation final : public Solver {
     std::vector<double> mass_kg_;
     std::vector<Vec2> force_n_;  ///< the weight or what replaces it; 0 for a pinned particle
     Forces forces_;
+    bool goes_on_;  ///< it starts on its way
     std::vector<bool> is_free_;
     std::vector<MovingPin> pins_;
     std::vector<RelaxationBar> bars_;            ///< for kScalar

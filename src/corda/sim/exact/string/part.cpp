@@ -41,10 +41,12 @@ System relative_to_first(System string) {
 
 /// One entry per link. These links count as taut if their tensions do not decide, as in a rope that falls
 /// straight.
-std::vector<std::uint8_t> links_at_rest_length(const System& string) {
+std::vector<std::uint8_t> links_at_rest_length(const System& string, Vec2 offset_m) {
     double farthest_m = 0.0;
     for (std::size_t i = 0; i < string.particle_count(); ++i)
         farthest_m = std::max({farthest_m, std::abs(string.x_m[i]), std::abs(string.y_m[i])});
+    // A later phase has its places from the system's origin.
+    if (string.start_s > 0.0) farthest_m += std::max(std::abs(offset_m.x), std::abs(offset_m.y));
     const double rounding_m = kUlpsAtRest * std::numeric_limits<double>::epsilon() * farthest_m;
     std::vector<std::uint8_t> is_taut;
     for (const Bar& link : string.bars) {
@@ -97,7 +99,7 @@ StringPart::StringPart(const System& system, const Forces& forces, double tolera
       tolerance_(tolerance),
       offset_m_{system.x_m.front(), system.y_m.front()},
       string_(relative_to_first(system)),
-      is_taut_(links_at_rest_length(string_)),
+      is_taut_(links_at_rest_length(string_, offset_m_)),
       longer_m_(std::move(longer_m)),
       contacts_(string_, forces, tolerance),
       finder_(string_.particle_count()) {
@@ -204,6 +206,10 @@ double StringPart::energy_j() const {
         if (!string_.is_pinned(i)) energy_j += string_.mass_kg[i] * forces_.potential_j_kg(offset_m_);
     }
     return energy_j;
+}
+
+void StringPart::read_rest_lengths(std::vector<Bar>& bars) const {
+    for (std::size_t k = 0; k < bars.size(); ++k) bars[k].rest_m = string_.bars[k].rest_m;
 }
 
 std::uint64_t StringPart::steps() const {

@@ -38,9 +38,11 @@ class StringPart final : public Exact {
     /// Number of times at which links went slack or snapped.
     [[nodiscard]] std::uint64_t events() const { return events_; }
 
-    /// Error of positions in metres from which snaps between the last two requested times may have happened
-    /// in another order, or not at all, or a link that nearly reached its rest length may have snapped.
-    [[nodiscard]] double margin_m() const { return margin_m_; }
+    /// Of what it has lengthened by `longer_m`.
+    void read_rest_lengths(std::vector<Bar>& bars) const override;
+
+    /// Also the error from which a link that nearly reached its rest length may have snapped.
+    [[nodiscard]] double margin_m() const override { return margin_m_; }
 
   private:
     struct Decision {
