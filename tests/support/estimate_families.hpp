@@ -32,6 +32,8 @@ struct EstimateFamily {
 
 /// Pins that move, and wind.
 [[nodiscard]] std::span<const EstimateFamily> driven_families();
+/// Scenes of the other families in which pins are let go or links are cut.
+[[nodiscard]] std::span<const EstimateFamily> event_families();
 
 /// A rope of 1 m from (0, 0) in directions around `angle` from straight down, in radians.
 [[nodiscard]] RopeDef crooked_rope(Random& random, int links, double angle, double spread);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <numbers>
 
 namespace corda::test {
@@ -69,7 +71,8 @@ ExtendedMotion::ExtendedMotion(const System& system, const WorldDef& world, cons
     : count_(static_cast<Eigen::Index>(system.particle_count())),
       world_(world),
       bends_(system.bends),
-      moves_(system.moves) {
+      moves_(system.moves),
+      mass_kg_(system.mass_kg) {
     y_ = Vector::Zero(4 * count_);
     rest_ = y_;
     for (Eigen::Index i = 0; i < count_; ++i) {
@@ -79,6 +82,7 @@ ExtendedMotion::ExtendedMotion(const System& system, const WorldDef& world, cons
         y_[2 * count_ + i] = system.vx_m_s[k];
         y_[3 * count_ + i] = system.vy_m_s[k];
         inverse_mass_.push_back(system.is_pinned(k) ? Real{0} : Real{1} / Real{system.mass_kg[k]});
+        release_s_.push_back(system.release_s.empty() ? HUGE_VAL : system.release_s[k]);
         if (!system.is_pinned(k)) mass_ += system.mass_kg[k];
     }
     strength_ = pair_of(world.gravity_m_s2).norm() +
@@ -87,15 +91,25 @@ ExtendedMotion::ExtendedMotion(const System& system, const WorldDef& world, cons
     size_ = largest_length_m(system);
     shortest_ = size_;
     for (const Body& body : system.bodies) add_links(system, body);
-    if (!begin()) failure_ = "the start is not determined";
+    changes_s_ = release_s_;
+    for (const auto* const links : {&links_, &idle_})
+        for (const Link& link : *links) changes_s_.push_back(link.cut_s);
+    std::sort(changes_s_.begin(), changes_s_.end(), std::greater<>());
+    changes_s_.erase(std::unique(changes_s_.begin(), changes_s_.end()), changes_s_.end());
+    if (changes_s_.front() == HUGE_VAL) changes_s_.erase(changes_s_.begin());
+    const bool changes_at_once = !changes_s_.empty() && changes_s_.back() == 0.0;
+    if (changes_at_once) changes_s_.pop_back();
+    if (changes_at_once ? !change() : !begin()) failure_ = "the start is not determined";
 }
 
 void ExtendedMotion::add_links(const System& system, const Body& body) {
     for (std::size_t k = body.first_bar; k < body.first_bar + body.bar_count; ++k) {
         const Bar& bar = system.bars[k];
-        if (system.is_pinned(bar.a) && system.is_pinned(bar.b)) continue;
-        links_.push_back({bar.a, bar.b, bar.rest_m, body.material.compliance_1_n, body.material.is_string});
-        Link& link = links_.back();
+        const bool is_idle = system.is_pinned(bar.a) && system.is_pinned(bar.b);
+        Link& link = (is_idle ? idle_ : links_)
+                         .emplace_back(Link{bar.a, bar.b, bar.rest_m, body.material.compliance_1_n,
+                                            body.material.is_string});
+        if (!system.cut_s.empty()) link.cut_s = system.cut_s[k];
         link.pulls = !link.is_string;
         has_strings_ = has_strings_ || link.is_string;
         shortest_ = std::min(shortest_, link.rest);
@@ -108,6 +122,34 @@ bool ExtendedMotion::fail(const char* reason) {
 }
 
 bool ExtendedMotion::advance_to(double time_s) {
+    while (!changes_s_.empty() && changes_s_.back() <= time_s) {
+        if (!move_to(changes_s_.back())) return false;
+        changes_s_.pop_back();
+        if (!change()) return fail("what is let go or cut leaves no solution");
+    }
+    return move_to(time_s);
+}
+
+bool ExtendedMotion::change() {
+    const auto now_s = static_cast<double>(time_);
+    for (std::size_t i = 0; i < inverse_mass_.size(); ++i) {
+        if (inverse_mass_[i] > 0 || release_s_[i] > now_s) continue;
+        inverse_mass_[i] = Real{1} / Real{mass_kg_[i]};
+        mass_ += mass_kg_[i];
+    }
+    const auto is_free = [&](const Link& link) { return inverse_mass_[link.a] + inverse_mass_[link.b] > 0; };
+    std::copy_if(idle_.begin(), idle_.end(), std::back_inserter(links_), is_free);
+    std::erase_if(idle_, is_free);
+    std::erase_if(links_, [&](const Link& link) { return link.cut_s <= now_s; });
+    std::erase_if(bends_, [&](const Bend& bend) { return bend.cut_s <= now_s; });
+    std::erase_if(moves_, [&](const MoveDef& move) { return inverse_mass_[move.pin] > 0; });
+    has_strings_ = std::any_of(links_.begin(), links_.end(), [](const Link& link) { return link.is_string; });
+    constexpr Real kFirstStep = 1e-3L;
+    step_ = std::min(step_, kFirstStep);
+    return begin();
+}
+
+bool ExtendedMotion::move_to(double time_s) {
     if (!failure_.empty()) return false;
     while (time_ < time_s) {
         if (++steps_ > kMaxSteps) return fail("the truth takes too many steps");

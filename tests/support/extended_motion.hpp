@@ -21,8 +21,9 @@ namespace corda::test {
 ///
 /// Between events, links of strings either pull or are absent. A step ends where the first of them reaches
 /// its rest length or stops pulling. Two complementarity problems decide which rigid links pull from then on,
-/// one for the impulses of a plastic snap and one for the tensions; both are solved by Murty's rule. No code
-/// is shared with Corda's solvers.
+/// one for the impulses of a plastic snap and one for the tensions; both are solved by Murty's rule. Where
+/// pins are let go or links cut, a step ends as well, and the equations change. No code is shared with
+/// Corda's solvers.
 class ExtendedMotion {
   public:
     using Real = long double;
@@ -56,6 +57,7 @@ class ExtendedMotion {
         bool pulls = true;
         Real square = 0;  ///< of its length, if it is rigid and pulls; else 0
         Real least = 0;   ///< the zero of its margin
+        double cut_s = HUGE_VAL;
     };
     /// Tension of a link and the rate at which its ends part, in any units.
     struct Answer {
@@ -64,6 +66,10 @@ class ExtendedMotion {
     };
 
     void add_links(const System& system, const Body& body);
+    /// Advances within a phase.
+    [[nodiscard]] bool move_to(double time_s);
+    /// Lets go of pins and removes what is cut by now.
+    [[nodiscard]] bool change();
     [[nodiscard]] Pair apart(const Vector& y, const Link& link, Eigen::Index first) const;
     void push(Vector& slope, std::size_t i, const Pair& force) const;
     void add_bends(const Vector& y, Vector& slope) const;
@@ -102,6 +108,10 @@ class ExtendedMotion {
     std::vector<MoveDef> moves_;
     Real strength_ = 0;  ///< bound of accelerations by what is not a bar
     std::vector<Real> inverse_mass_;
+    std::vector<double> mass_kg_;
+    std::vector<double> release_s_;  ///< infinite for what is never let go
+    std::vector<double> changes_s_;  ///< when something is let go or cut, the next one last
+    std::vector<Link> idle_;         ///< links between pins
     std::vector<Link> links_;
     std::vector<std::size_t> rigid_;   ///< the rigid ones that pull
     std::vector<Eigen::Index> first_;  ///< per entry of rigid_: the first entry that it is coupled with
