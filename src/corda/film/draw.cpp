@@ -110,7 +110,7 @@ void draw_poses(const Look& look, const Motion& motion, std::span<const double> 
                 view::DrawList& list) {
     const view::Camera map = look.map_at(times_s.back());
     view::start(look.view, list);
-    view::draw_trails(look.view, look.paths.to(motion.at(times_s.back())), map, list);
+    view::draw_trails(look.view, look.paths.to(motion.at(times_s.back())), times_s.back(), map, list);
     std::vector<view::PoseTime> poses;
     view::Caption caption;
     motion.for_each(times_s, [&](const State& state, const Figures& figures) {
@@ -122,7 +122,7 @@ void draw_poses(const Look& look, const Motion& motion, std::span<const double> 
                         times_s.size(), kMaxPoseCapsules);
         }
         if (poses.size() < times_s.size()) return;
-        view::draw_supports(look.view, state, map, list);
+        view::draw_supports(look.view, state, map, list, times_s.front());
         caption = caption_of(look, motion, state, figures, map);
     });
     if (times_s.size() > 1) {  // the picture has no single time

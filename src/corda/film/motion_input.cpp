@@ -153,7 +153,9 @@ void add_rope_notes(const std::string& name, const RopeDef& rope, std::vector<st
     add_pulled_in(name, rope, notes);
     add_pinned_velocity(name, rope.velocity_m_s, rope.pinned, notes);
     const auto last = static_cast<std::uint32_t>(rope.points_m.size() - 1);
-    const bool is_last_pinned = std::ranges::find(rope.pinned, last) != rope.pinned.end();
+    const bool is_last_pinned =
+        std::ranges::find(rope.pinned, last) != rope.pinned.end() &&
+        std::ranges::find(rope.releases, last, &ReleaseDef::pin) == rope.releases.end();
     if (rope.payload_kg > 0.0 && is_last_pinned) {
         notes.push_back(fmt::format(
             "{}: payload {} kg changes nothing, because the last particle is pinned; remove payload, or -1 "

@@ -14,7 +14,7 @@ namespace {
 std::vector<std::size_t> particles_of(const System& system, const Body& body, bool are_pinned) {
     std::vector<std::size_t> particles;
     for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i)
-        if (system.is_pinned(i) == are_pinned) particles.push_back(i);
+        if (are_pinned ? system.is_pinned(i) : !system.stays_pinned(i)) particles.push_back(i);
     return particles;
 }
 

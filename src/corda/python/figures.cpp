@@ -208,7 +208,7 @@ py::dict body_facts(const Film& film, const System& named, std::size_t b,
     facts["knows_tensions"] = sim::knows_tensions(method);
     facts["moves"] = false;
     for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i)
-        if (!system.is_pinned(i)) facts["moves"] = true;
+        if (!system.stays_pinned(i)) facts["moves"] = true;
     for (const film::TrackedParticle& one : tracked) {
         if (one.body != b) continue;
         facts["tracked"] = one.particle;

@@ -47,7 +47,7 @@ double to_four_bits(double value) {
 std::vector<std::size_t> chosen(const System& system, const Body& body, std::size_t count) {
     std::vector<std::size_t> free;
     for (std::size_t i = body.first_particle + body.particle_count; i-- > body.first_particle;)
-        if (!system.is_pinned(i)) free.push_back(i);
+        if (!system.stays_pinned(i)) free.push_back(i);
     const std::size_t stride = std::max<std::size_t>(1, (free.size() + count - 1) / count);
     std::vector<std::size_t> some;
     for (std::size_t k = 0; k < free.size(); k += stride) some.push_back(free[k]);
@@ -153,6 +153,7 @@ std::vector<Arrow> ArrowPlaces::of(const State& state, double apart_m) const {
     double gone_m = HUGE_VAL;
     for (const auto& [i, k, path_m, to_support_m] : places_) {
         gone_m += path_m;
+        if (system_->is_pinned_at(i, state.time_s)) continue;
         if (gone_m < apart_m || (path_m < HUGE_VAL && to_support_m < apart_m)) continue;
         const Vec2 at_m{state.x_m[i], state.y_m[i]};
         Vec2 value = system_->mass_kg[i] * gravity_m_s2_;

@@ -63,7 +63,7 @@ std::vector<Ball> balls_of(const System& system, const Body& body, const BodyVie
     for (std::size_t i = body.first_particle; i <= last; ++i) {
         const bool is_bob = body.link_count <= kLinksOfPendulum;
         const bool has_payload = i == last && body.payload_kg > 0.0;
-        if (system.is_pinned(i) || !(is_bob || has_payload)) continue;
+        if (system.stays_pinned(i) || !(is_bob || has_payload)) continue;
         const double mass_kg = is_bob ? system.mass_kg[i] : body.payload_kg;
         const double radius_px = ball_radius(mass_kg, rope_kg) * side_px;
         const std::size_t link =
@@ -155,6 +155,7 @@ void draw_links(const SceneView& view, std::size_t b, bool is_tinted, double hal
                 const State& state, const Camera& camera, DrawList& list) {
     const Body& body = view.system->bodies[b];
     for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k) {
+        if (!view.system->has_bar_at(k, state.time_s)) continue;
         const Bar& link = view.system->bars[k];
         const double radius_px = link_radius_px(body, view.bodies[b], k);
         const Stroke stroke{radius_px, halo_per_radius * radius_px,
@@ -173,8 +174,9 @@ void draw_bars(const SceneView& view, bool real, const State& state, const Camer
     const double width_px = view.style.bar_width_px.value_or(
         std::max(kMinBarWidthPx, kBarWidthPerRopeWidth * view.rope_width_px));
     list.add_layer(real ? view.colors.real_bar : view.colors.imaginary_bar);
-    for (const Bar& bar : view.system->bars) {
-        if ((bar.reach == 1) == real)
+    for (std::size_t k = 0; k < view.system->bars.size(); ++k) {
+        const Bar& bar = view.system->bars[k];
+        if ((bar.reach == 1) == real && view.system->has_bar_at(k, state.time_s))
             list.add_capsule(camera.at(state, bar.a), camera.at(state, bar.b), 0.5 * width_px);
     }
 }
@@ -187,10 +189,17 @@ void draw_markers(const SceneView& view, bool pinned, const State& state, const 
         const double radius_px =
             pinned ? view.bodies[b].pinned_marker_radius_px : view.bodies[b].free_marker_radius_px;
         for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
-            if (view.system->is_pinned(i) == pinned)
+            if (view.system->is_pinned_at(i, state.time_s) == pinned)
                 list.add_capsule(camera.at(state, i), camera.at(state, i), radius_px);
         }
     }
+}
+
+/// A pin whose way was drawn because it moved, and that was let go.
+bool is_former_pin(const SceneView& view, std::size_t i, double time_s) {
+    const System& system = *view.system;
+    return view.style.trail_of.empty() && system.is_pinned(i) && !system.is_pinned_at(i, time_s) &&
+           free_end(system, system.bodies[body_of(system, i)]) != i;
 }
 
 }  // namespace
@@ -200,8 +209,8 @@ std::optional<std::size_t> free_end(const System& system, const Body& body) {
     if (body.is_net || is_closed) return std::nullopt;
     const std::size_t first = body.first_particle;
     const std::size_t last = first + body.particle_count - 1;
-    if (!system.is_pinned(last)) return last;
-    return system.is_pinned(first) ? std::nullopt : std::optional(first);
+    if (!system.stays_pinned(last)) return last;
+    return system.stays_pinned(first) ? std::nullopt : std::optional(first);
 }
 
 std::vector<std::size_t> free_ends(const System& system) {
@@ -306,7 +315,7 @@ std::vector<Drawn> drawn_bodies(const SceneView& view, std::span<const MotionBou
 void draw(const SceneView& view, const State& state, const Camera& camera, DrawList& list,
           std::span<const Trail> trails) {
     start(view, list);
-    draw_trails(view, trails, camera, list);
+    draw_trails(view, trails, state.time_s, camera, list);
     draw_pose(view, state, camera, list);
     draw_supports(view, state, camera, list);
 }
@@ -318,7 +327,8 @@ void start(const SceneView& view, DrawList& list) {
     list.clear();
 }
 
-void draw_trails(const SceneView& view, std::span<const Trail> trails, const Camera& camera, DrawList& list) {
+void draw_trails(const SceneView& view, std::span<const Trail> trails, double time_s, const Camera& camera,
+                 DrawList& list) {
     if (trails.empty()) return;
     double points = 1.0;
     for (const Trail& trail : trails) points += static_cast<double>(trail.size());
@@ -327,6 +337,7 @@ void draw_trails(const SceneView& view, std::span<const Trail> trails, const Cam
     std::vector<FadingPoint> path;
     for (std::size_t i = 0; i < view.traced.size(); ++i) {
         check_cancelled();
+        if (is_former_pin(view, view.traced[i], time_s)) continue;
         const std::size_t b = body_of(*view.system, view.traced[i]);
         path.clear();
         for (const auto& [age_s, at_m, velocity_m_s] : trails[i])
@@ -354,6 +365,7 @@ void draw_bodies(const SceneView& view, std::size_t first, std::size_t end, cons
         const double halo_per_radius = view.style.halo && first > 0 ? kHaloPerWidth * 2.0 : 0.0;
         draw_links(view, b, is_tinted, halo_per_radius, state, camera, list);
         for (const Ball& ball : view.bodies[b].balls) {
+            if (view.system->is_pinned_at(ball.particle, state.time_s)) continue;
             Tint tint = is_tinted ? tint_of(view, b, ball.link, state) : Tint{};
             if (is_one) tint.weight = kBallWeight;
             const PixelPoint at = camera.at(state, ball.particle);
@@ -363,7 +375,8 @@ void draw_bodies(const SceneView& view, std::size_t first, std::size_t end, cons
     if (!is_one || view.bodies[first].balls.empty() || view.ball_count > kMaxOutlines) return;
     list.add_layer(view.colors.outline);
     for (const Ball& ball : view.bodies[first].balls)
-        list.add_ring(camera.at(state, ball.particle), inside_px(ball), outline_px);
+        if (!view.system->is_pinned_at(ball.particle, state.time_s))
+            list.add_ring(camera.at(state, ball.particle), inside_px(ball), outline_px);
 }
 
 void draw_pose(const SceneView& view, const State& state, const Camera& camera, DrawList& list) {
@@ -379,9 +392,10 @@ void draw_pose(const SceneView& view, const State& state, const Camera& camera, 
     view.arrows.draw(state, camera, list);
 }
 
-void draw_supports(const SceneView& view, const State& state, const Camera& camera, DrawList& list) {
+void draw_supports(const SceneView& view, const State& state, const Camera& camera, DrawList& list,
+                   std::optional<double> first_s) {
     list.add_layer(view.colors.support);
-    view.supports.draw(state, camera, list);
+    view.supports.draw(state, first_s.value_or(state.time_s), camera, list);
     if (view.style.markers != Markers::kNone) draw_markers(view, true, state, camera, list);
 }
 

@@ -46,7 +46,8 @@ inline constexpr double kCapsuleBytes = sizeof(Capsule);
 void add_trail(std::span<const FadingPoint> points, double radius_px, Color color, DrawList& list,
                double max_pieces = kMaxPiecesPerPoint);
 
-/// The free end of an open rope that has one, preferably its last particle.
+/// The free end of an open rope that has one, at the latest once pins are let go, preferably its last
+/// particle.
 [[nodiscard]] std::optional<std::size_t> free_end(const System& system, const Body& body);
 
 /// One free end per open rope that has one.
@@ -126,10 +127,14 @@ void draw(const SceneView& view, const State& state, const Camera& camera, DrawL
 
 // The steps of draw(), for several poses in one picture: draw_pose() once per pose, the others once.
 void start(const SceneView& view, DrawList& list);
-void draw_trails(const SceneView& view, std::span<const Trail> trails, const Camera& camera, DrawList& list);
+/// A pin that moved and was let go by `time_s` has no trail any more.
+void draw_trails(const SceneView& view, std::span<const Trail> trails, double time_s, const Camera& camera,
+                 DrawList& list);
 void draw_pose(const SceneView& view, const State& state, const Camera& camera, DrawList& list);
-/// Draws the supports, which never move; any `state` will do.
-void draw_supports(const SceneView& view, const State& state, const Camera& camera, DrawList& list);
+/// Draws the supports at the places of a state: those that are there at its time, or, for several poses, at
+/// that of the first one.
+void draw_supports(const SceneView& view, const State& state, const Camera& camera, DrawList& list,
+                   std::optional<double> first_s = {});
 
 /// Draws the links and balls of bodies first <= b < end in one layer.
 void draw_bodies(const SceneView& view, std::size_t first, std::size_t end, const State& state,

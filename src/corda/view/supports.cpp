@@ -41,7 +41,7 @@ double width_px(double share, double side_px) {
 
 Supports::Supports(const System& system, Vec2 gravity_m_s2, std::span<const MotionBounds> motion,
                    double side_px, std::span<const double> line_px)
-    : side_px_(side_px), up_(axis_against(gravity_m_s2)) {
+    : side_px_(side_px), up_(axis_against(gravity_m_s2)), has_releases_(!system.release_s.empty()) {
     for (std::size_t i = 0; i < system.bodies.size(); ++i)
         add_pins(system, system.bodies[i], motion, line_px[i]);
     std::ranges::sort(plates_, {}, [this](const Plate& plate) {
@@ -59,16 +59,22 @@ void Supports::add_pins(const System& system, const Body& body, std::span<const 
     const double hidden_m = kHidden * links_length_m(system, body);
     for (std::size_t i = body.first_particle; i < end; ++i) {
         // A pinned particle next to a pin of a rope is a clamp.
-        const bool is_clamped = !body.is_net && i > body.first_particle && system.is_pinned(i - 1);
+        const auto release_s = [&](std::size_t pin) {
+            return system.release_s.empty() ? HUGE_VAL : system.release_s[pin];
+        };
+        const bool is_clamped = !body.is_net && i > body.first_particle && system.is_pinned(i - 1) &&
+                                release_s(i - 1) >= release_s(i);
         if (!system.is_pinned(i) || is_clamped) continue;
         const Vec2 pin_m{system.x_m[i], system.y_m[i]};
         const bool moves = std::ranges::find(system.moves, i, &MoveDef::pin) != system.moves.end();
         const bool has_plate = !moves && up_ != Vec2{} && top_m <= local(pin_m).up + hidden_m;
         if (has_plate)
-            plates_.push_back({pin_m, std::clamp(line_px, width_px(kPlateWidth, side_px_),
-                                                 kMaxPlateWidths * width_px(kPlateWidth, side_px_))});
+            plates_.push_back({pin_m,
+                               std::clamp(line_px, width_px(kPlateWidth, side_px_),
+                                          kMaxPlateWidths * width_px(kPlateWidth, side_px_)),
+                               release_s(i)});
         else
-            rings_.push_back({pin_m, std::max(kRingRadius * side_px_, kRingPerLine * line_px),
+            rings_.push_back({pin_m, std::max(kRingRadius * side_px_, kRingPerLine * line_px), release_s(i),
                               moves ? std::optional(i) : std::nullopt, motion[i]});
     }
 }
@@ -98,31 +104,41 @@ void Supports::list(std::vector<Drawn>& drawn) const {
     }
 }
 
-void Supports::draw(const State& state, const Camera& camera, DrawList& list) const {
+void Supports::draw(const State& state, double time_s, const Camera& camera, DrawList& list) const {
     const double length_px = kPlateLength * side_px_;
     const auto at_px = [&](Vec2 v) { return PixelPoint{camera.x_px(v.x), camera.y_px(v.y)}; };
+    Supports left;  // without those that are gone; empty if none is
+    if (has_releases_) {
+        left = *this;
+        std::erase_if(left.plates_, [&](const Plate& plate) { return plate.release_s <= time_s; });
+        std::erase_if(left.rings_, [&](const Ring& ring) {  // one that moved is elsewhere by now
+            return ring.release_s <= (ring.moving ? state.time_s : time_s);
+        });
+    }
+    const std::vector<Plate>& plates = has_releases_ ? left.plates_ : plates_;
+    const std::vector<Ring>& rings = has_releases_ ? left.rings_ : rings_;
     if (plates_.size() + rings_.size() > kMaxSupports) {
         const auto dot = [&](PixelPoint at) { list.add_capsule(at, at, width_px(kRingWidth, side_px_)); };
-        for (const Plate& plate : plates_) dot(at_px(plate.pin_m));
-        for (const Ring& ring : rings_) dot(at_px(ring.center_at(state)));
+        for (const Plate& plate : plates) dot(at_px(plate.pin_m));
+        for (const Ring& ring : rings) dot(at_px(ring.center_at(state)));
         return;
     }
-    for (std::size_t i = 0; i < plates_.size();) {
+    for (std::size_t i = 0; i < plates.size();) {
         const std::size_t first = i;
-        double plate_px = plates_[first].width_px;
+        double plate_px = plates[first].width_px;
         const auto touches_next = [&] {
-            const Local here = local(plates_[i].pin_m);
-            const Local next = local(plates_[i + 1].pin_m);
+            const Local here = local(plates[i].pin_m);
+            const Local next = local(plates[i + 1].pin_m);
             return next.up == here.up && (next.along - here.along) * camera.pixels_per_metre() <= length_px;
         };
-        while (i + 1 < plates_.size() && touches_next()) plate_px = std::max(plate_px, plates_[++i].width_px);
-        const double span_m = local(plates_[i].pin_m).along - local(plates_[first].pin_m).along;
-        draw_plate(at_px(plates_[first].pin_m), span_m * camera.pixels_per_metre() + length_px, plate_px,
+        while (i + 1 < plates.size() && touches_next()) plate_px = std::max(plate_px, plates[++i].width_px);
+        const double span_m = local(plates[i].pin_m).along - local(plates[first].pin_m).along;
+        draw_plate(at_px(plates[first].pin_m), span_m * camera.pixels_per_metre() + length_px, plate_px,
                    list);
         ++i;
     }
     const double ring_px = width_px(kRingWidth, side_px_);
-    for (const Ring& ring : rings_)
+    for (const Ring& ring : rings)
         list.add_ring(at_px(ring.center_at(state)), ring.radius_px - 0.5 * ring_px, ring_px);
 }
 

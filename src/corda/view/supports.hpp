@@ -24,8 +24,9 @@ class Supports {
 
     /// Adds the extents of the supports.
     void list(std::vector<Drawn>& drawn) const;
-    /// Draws into the last layer of `list`, at the places of a state.
-    void draw(const State& state, const Camera& camera, DrawList& list) const;
+    /// Draws those that are there at `time_s`, at the places of a state then or later, into the last layer of
+    /// `list`.
+    void draw(const State& state, double time_s, const Camera& camera, DrawList& list) const;
 
   private:
     /// Along the plate to the right, and upwards from it.
@@ -36,11 +37,13 @@ class Supports {
 
     struct Plate {
         Vec2 pin_m;
-        double width_px = 0.0;  ///< enough to hide the round end of a line
+        double width_px = 0.0;   ///< enough to hide the round end of a line
+        double release_s = 0.0;  ///< when its pin is let go; infinite for most
     };
     struct Ring {
         Vec2 center_m;
         double radius_px = 0.0;
+        double release_s = 0.0;
         std::optional<std::size_t> moving;  ///< the particle in its centre, if it moves
         MotionBounds way;                   ///< of that
         [[nodiscard]] Vec2 center_at(const State& state) const {
@@ -54,7 +57,8 @@ class Supports {
     void draw_plate(PixelPoint first, double length_px, double plate_px, DrawList& list) const;
 
     double side_px_ = 0.0;
-    Vec2 up_;                    ///< a unit vector along an axis, y up; 0 without gravity
+    Vec2 up_;  ///< a unit vector along an axis, y up; 0 without gravity
+    bool has_releases_ = false;
     std::vector<Plate> plates_;  ///< in the order in which they may touch
     std::vector<Ring> rings_;
 };

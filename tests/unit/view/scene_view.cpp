@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -51,6 +53,93 @@ TEST(SceneView, APlainRopeIsOneLayerOfItsLinks) {
     EXPECT_EQ(list.layers[0].capsule_count, 5U);
     EXPECT_EQ(list.capsules[0].radius, 2.0F);
     EXPECT_EQ(list.capsules[0].halo_radius, 0.0F);
+}
+
+/// The links and markers of one rope at a time, and at a later one.
+std::array<std::vector<std::size_t>, 2> counts_at(const RopeDef& rope, const StyleDef& style, double before_s,
+                                                  double after_s) {
+    std::array<std::vector<std::size_t>, 2> counts;
+    const System system = build_system({&rope, 1});
+    State state{before_s, system.x_m, system.y_m};
+    std::vector<MotionBounds> motion;
+    test::include(state, motion);
+    const SceneView view = make_scene_view(system, {0.0, -9.81}, style, {}, kWidth, kHeight, {motion});
+    const Camera camera(fit_camera({}, {}, drawn(view, motion), kWidth, kHeight), {}, kWidth, kHeight);
+    for (auto* const of : {&counts[0], &counts[1]}) {
+        DrawList list;
+        draw(view, state, camera, list);
+        for (const Layer& layer : list.layers) of->push_back(layer.capsule_count);
+        state.time_s = after_s;
+    }
+    return counts;
+}
+
+TEST(SceneView, ALinkThatIsCutIsGone) {
+    RopeDef rope = reference::straight_rope(5, 1.0, 30.0);
+    rope.cuts = {{1, 1.0}, {3, 2.0}};
+    const auto [before, after] = counts_at(rope, plain(), 0.99, 1.0);
+    EXPECT_EQ(before[0], 5U);
+    EXPECT_EQ(after[0], 4U);
+    StyleDef bars = plain();
+    bars.bars = Bars::kAll;
+    rope.reach = 2;
+    const auto [all, left] = counts_at(rope, bars, 0.0, 2.0);
+    // Imaginary bars, links and real bars: those over both cuts are gone.
+    EXPECT_EQ(all[0], 4U);
+    EXPECT_EQ(left[0], 0U);
+    EXPECT_EQ(all[2], 5U);
+    EXPECT_EQ(left[2], 3U);
+}
+
+TEST(SceneView, APinThatIsLetGoIsAFreeParticle) {
+    RopeDef rope = reference::straight_rope(2, 1.0, 30.0);
+    rope.releases = {{0, 1.0}};
+    StyleDef style = plain();
+    style.markers = Markers::kAll;
+    const auto [before, after] = counts_at(rope, style, 0.0, 1.0);
+    EXPECT_EQ(before[1], 2U);  // free ones
+    EXPECT_EQ(after[1], 3U);
+    EXPECT_EQ(before.back(), 1U);
+    EXPECT_EQ(after.back(), 0U);
+    // A pendulum has a ball there from then on.
+    style = plain();
+    style.payload = true;
+    const auto [balls, more] = counts_at(reference::straight_rope(2, 1.0, 30.0), style, 0.0, 1.0);
+    EXPECT_EQ(balls, more);
+    const auto [hung, thrown] = counts_at(rope, style, 0.0, 1.0);
+    EXPECT_EQ(hung[0], balls[0]);
+    EXPECT_EQ(thrown[0], hung[0] + 1);
+}
+
+TEST(SceneView, APinThatIsLetGoMayBeTheFreeEnd) {
+    RopeDef rope = reference::straight_rope(4, 1.0, 30.0);
+    rope.pinned = {0, 4};
+    System system = build_system({&rope, 1});
+    EXPECT_EQ(free_end(system, system.bodies[0]), std::nullopt);
+    rope.releases = {{4, 1.0}};
+    system = build_system({&rope, 1});
+    EXPECT_EQ(free_end(system, system.bodies[0]), 4U);
+}
+
+TEST(SceneView, APinThatMovedLeavesNoTrail) {
+    RopeDef rope = reference::straight_rope(4, 1.0, 30.0);
+    rope.moves = {{0, {{{0.1, 0.0}, 1.0, 0.0}}, {}}};
+    rope.releases = {{0, 1.0}};
+    const System system = build_system({&rope, 1});
+    StyleDef style = plain();
+    style.trail_s = 0.5;
+    const SceneView view = make_scene_view(system, {0.0, -9.81}, style, {}, kWidth, kHeight);
+    ASSERT_EQ(view.traced, (std::vector<std::size_t>{4, 0}));
+    const Trail trail{{0.4, {0.0, 0.0}, {1.0, 0.0}}, {0.0, {0.4, 0.0}, {1.0, 0.0}}};
+    const std::vector<Trail> trails{trail, trail};
+    const auto layers = [&](double time_s) {
+        DrawList list;
+        start(view, list);
+        draw_trails(view, trails, time_s, Camera({Vec2{0.0, 0.0}, 2.0}, {}, kWidth, kHeight), list);
+        return list.layers.size();
+    };
+    EXPECT_EQ(layers(0.9), 2U);
+    EXPECT_EQ(layers(1.0), 1U);
 }
 
 TEST(SceneView, MergedBodiesAreOneTintedLayerInAGradient) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <optional>
 #include <utility>
 
 #include "benchmark/study/reference/ropes.hpp"
@@ -18,7 +19,8 @@ constexpr std::size_t kRingCapsules = 64;
 
 /// The supports of a system whose particles go from their start to `higher_m` above it, at 100 pixels per
 /// metre.
-DrawList draw(const System& system, Vec2 gravity_m_s2, double higher_m = 0.0, double line_px = 4.0) {
+DrawList draw(const System& system, Vec2 gravity_m_s2, double higher_m = 0.0, double line_px = 4.0,
+              double time_s = 0.0, std::optional<double> first_s = {}) {
     std::vector<MotionBounds> motion;
     State state{0.0, system.x_m, system.y_m};
     test::include(state, motion);
@@ -31,7 +33,8 @@ DrawList draw(const System& system, Vec2 gravity_m_s2, double higher_m = 0.0, do
     list.height = 1000;
     list.add_layer({});
     Supports(system, gravity_m_s2, motion, kSidePx, std::array{line_px})
-        .draw(State{0.0, system.x_m, system.y_m}, Camera({Vec2{0.0, 0.0}, 10.0}, {}, 1000, 1000), list);
+        .draw(State{time_s, system.x_m, system.y_m}, first_s.value_or(time_s),
+              Camera({Vec2{0.0, 0.0}, 10.0}, {}, 1000, 1000), list);
     return list;
 }
 
@@ -108,6 +111,37 @@ TEST(Supports, OfThousandsOfPinsAreDots) {
         if (i > 0) net.bars.push_back({i - 1, i});
     }
     EXPECT_EQ(draw(build_system({}, {{net}}), {0.0, -9.81}).capsules.size(), 1001U);
+}
+
+TEST(Supports, AreGoneOnceTheirPinsAreLetGo) {
+    RopeDef rope;
+    rope.points_m = {{0.0, 0.0}, {1.0, -2.0}, {2.0, -1.0}};
+    rope.pinned = {0, 2};
+    rope.releases = {{0, 1.0}, {2, 2.0}};
+    const auto at = [&](double time_s, std::optional<double> first_s = {}) {
+        return draw(build_system({{rope}}, {}), {0.0, -9.81}, 0.0, 4.0, time_s, first_s).capsules.size();
+    };
+    EXPECT_EQ(at(0.9), kPlateCapsules + kRingCapsules);
+    EXPECT_EQ(at(1.0), kRingCapsules);
+    EXPECT_EQ(at(2.0), 0U);
+    // Of several poses, those of the first have them; a ring that moved would be elsewhere.
+    EXPECT_EQ(at(3.0, 0.5), kPlateCapsules + kRingCapsules);
+    EXPECT_EQ(at(3.0, 1.5), kRingCapsules);
+    rope.moves = {{2, {{{0.1, 0.0}, 1.0, 0.0}}, {}}};
+    EXPECT_EQ(at(3.0, 1.5), 0U);
+    EXPECT_EQ(at(1.5), kRingCapsules);
+}
+
+TEST(Supports, OfAClampStayWithTheLastOfItsPins) {
+    RopeDef rope;
+    rope.points_m = {{0.0, 0.0}, {0.5, 0.0}, {1.0, -2.0}};
+    rope.pinned = {0, 1};
+    const auto at = [&](double time_s) {
+        return draw(build_system({{rope}}, {}), {0.0, -9.81}, 0.0, 4.0, time_s).capsules.size();
+    };
+    EXPECT_EQ(at(0.0), kPlateCapsules);
+    rope.releases = {{0, 1.0}};
+    EXPECT_EQ(at(1.0), kPlateCapsules);
 }
 
 TEST(Supports, AreListedAsDrawn) {
