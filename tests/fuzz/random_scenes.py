@@ -174,6 +174,18 @@ class Generator:
             body["moves"] = [self.fit_move(pin, move) for pin, move in zip(pins, body["moves"])]
             if not body["moves"]:
                 del body["moves"]
+        if "release" in body:
+            pins = body.setdefault("pinned", [0])
+            body["release"] = [release | {"pin": pin} for pin, release in zip(pins, body["release"])]
+        if "cut" in body:
+            cuts = body["cut"][:1] if body.get("closed") else body["cut"]
+            most = (links + 1) // 2 if "grid" in body else links  # more than half of a grid's bars are no diagonals
+            body["cut"] = [cut | {"link": link} for link, cut in zip(self.random.sample(range(most), min(len(cuts), most)), cuts)]
+        for key in ("release", "cut"):
+            if body.get(key) == []:
+                del body[key]
+            for event in body.get(key, []):
+                event["t"] = self.random.choice((0.0, event["t"], self.random.uniform(0.0, 1.0)))
 
     def fit_move(self, pin, move):
         """Adapts a move to its pin, and a path's start and order."""

@@ -11,6 +11,7 @@
 #include "corda/core/text.hpp"
 #include "corda/film/provenance.hpp"
 #include "corda/scene/write_scene.hpp"
+#include "corda/sim/events.hpp"
 #include "corda/sim/forces/forces.hpp"
 #include "corda/sim/solver.hpp"
 #include "corda/view/camera.hpp"
@@ -125,7 +126,9 @@ std::vector<std::string> force_terms(const Scene& scene, const Materials& materi
     const auto moves = [](const auto& body) { return !body.moves.empty(); };
     const bool has_moves = std::ranges::any_of(scene.ropes, moves) || std::ranges::any_of(scene.nets, moves);
     if (has_moves) terms.emplace_back("pins that move, whose supports do work");
-    if (sim::Forces(scene.world).drag_1_s() != 0.0 || has_moves) return terms;
+    const std::string events = sim::events_text(scene.ropes, scene.nets);
+    if (!events.empty()) terms.push_back(events);
+    if (sim::Forces(scene.world).drag_1_s() != 0.0 || has_moves || !events.empty()) return terms;
     if (relaxation != nullptr && relaxation->delta > 0.0)
         terms.push_back(
             fmt::format("damping: a share of {} of the velocity is lost per step", relaxation->delta));

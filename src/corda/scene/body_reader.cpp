@@ -82,6 +82,42 @@ std::vector<MoveDef> read_moves(const TableReader& body, const std::vector<std::
     return moves;
 }
 
+std::vector<ReleaseDef> read_releases(const TableReader& body, const std::vector<std::uint32_t>& pinned,
+                                      const IndexOf& index_of) {
+    std::vector<ReleaseDef> releases;
+    for (const TableReader& table : body.tables("release")) {
+        ReleaseDef release;
+        read_fields(table, release);
+        const auto pin = table.find("pin");
+        const auto index = pin ? index_of(*pin) : std::nullopt;
+        if (!index) continue;
+        release.pin = *index;
+        if (std::ranges::find(pinned, release.pin) == pinned.end())
+            pin->add_problem(fmt::format("particle {} is not pinned", release.pin),
+                             "add it to pinned, or give the index of a pinned one");
+        if (std::ranges::find(releases, release.pin, &ReleaseDef::pin) != releases.end())
+            pin->add_problem(fmt::format("particle {} is let go already", release.pin), "remove one");
+        releases.push_back(release);
+    }
+    return releases;
+}
+
+std::vector<CutDef> read_cuts(const TableReader& body, std::int64_t links) {
+    std::vector<CutDef> cuts;
+    for (const TableReader& table : body.tables("cut")) {
+        CutDef cut;
+        read_fields(table, cut);
+        const auto link = table.find("link");
+        const auto index = link ? read_index(*link, links, "it has links") : std::nullopt;
+        if (!index) continue;
+        cut.link = *index;
+        if (std::ranges::find(cuts, cut.link, &CutDef::link) != cuts.end())
+            link->add_problem(fmt::format("link {} is cut already", cut.link), "remove one");
+        cuts.push_back(cut);
+    }
+    return cuts;
+}
+
 BodyStyleDef read_body_style(const TableReader& body, bool takes_link_colors) {
     BodyStyleDef def;
     read_fields(body, def);

@@ -86,4 +86,12 @@ std::string toml_text(const MoveDef& value) {
     return text + " }";
 }
 
+std::string toml_text(const ReleaseDef& value) {
+    return fmt::format("{{ pin = {}, t = {} }}", value.pin, toml_text(value.time_s));
+}
+
+std::string toml_text(const CutDef& value) {
+    return fmt::format("{{ link = {}, t = {} }}", value.link, toml_text(value.time_s));
+}
+
 }  // namespace corda::scene

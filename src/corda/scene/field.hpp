@@ -33,6 +33,8 @@ requires std::is_integral_v<T>
 [[nodiscard]] std::string toml_text(const WaveDef& value);
 [[nodiscard]] std::string toml_text(const PathKeyDef& value);
 [[nodiscard]] std::string toml_text(const MoveDef& value);
+[[nodiscard]] std::string toml_text(const ReleaseDef& value);
+[[nodiscard]] std::string toml_text(const CutDef& value);
 
 template <class T>
 [[nodiscard]] std::string toml_text(const std::vector<T>& values) {

@@ -99,6 +99,10 @@ std::vector<Key> body_keys(std::string_view section, std::vector<Key> keys, std:
         {section, "moves", of(Kind::kTables), "", none(),
          "moves = [{ pin = 0, waves = [{ amplitude = [0.1, 0.0], frequency = 1.0 }] }]",
          "the sum of waves and a path moves a pinned particle"},
+        {section, "release", of(Kind::kTables), "", none(), "release = [{ pin = -1, t = 2.0 }]",
+         "pins that are let go: free from then on, with the velocity that they have"},
+        {section, "cut", of(Kind::kTables), "", none(), "cut = [{ link = 12, t = 3.0 }]",
+         "links that are gone from then on"},
         {section, "color", color, "", otherwise("the next of style.palette", body_color()), "the colour",
          "a list: of its links in turn, with style.color_by = \"link\""},
         {section, "width_px", kIsNet ? number(kWidthPx) : or_pair(number(kWidthPx), "[first, last]"), "px",
@@ -138,6 +142,28 @@ std::vector<Key> move_keys(bool are_of_nets) {
     keys.push_back({path, "by", pair("[dx, dy]", kCoordinate), "m", required(field(&PathKeyDef::by_m)),
                     "the displacement from the place in the scene"});
     return keys;
+}
+
+/// The keys of the pins of ropes or nets that are let go, and of their links that are cut.
+std::vector<Key> event_keys(bool are_of_nets) {
+    const std::string_view release = are_of_nets ? "net.release" : "rope.release";
+    const std::string_view cut = are_of_nets ? "net.cut" : "rope.cut";
+    Type pin = of(Kind::kInteger);
+    if (are_of_nets) pin = or_pair(pin, "[column, row]");
+    return {
+        {release, "pin", pin, "",
+         required(body_field<ReleaseDef>([](const ReleaseDef& def) { return toml_text(def.pin); })),
+         "the index of a pinned particle", "-1 is the last"},
+        {release, "t", number(kFrom0), "s", required(field(&ReleaseDef::time_s)),
+         "the time from which it is free"},
+        {cut, "link", of(Kind::kInteger), "",
+         required(body_field<CutDef>([](const CutDef& def) { return toml_text(def.link); })),
+         "the index of a link, -1 is the last",
+         are_of_nets ? "those of a grid go along the rows, then along the columns, from the upper left"
+                     : "link k joins particles k and k + 1"},
+        {cut, "t", number(kFrom0), "s", required(field(&CutDef::time_s)), "the time from which it is gone",
+         are_of_nets ? "diagonals of its cells go with it" : ""},
+    };
 }
 
 std::vector<Key> rope_shapes() {
@@ -371,8 +397,8 @@ std::vector<Key> model_rows() {
     for (const std::vector<Key>& part :
          {world_keys(), wave_keys("world.gusts", "m/s"),
           body_keys<RopeDef>("rope", rope_shapes(), "style.rope_width_px"), rope_keys(), rope_shape_keys(),
-          move_keys(false), body_keys<NetDef>("net", net_shapes(), "style.net_width_px"), net_keys(),
-          move_keys(true), solver_keys(), solver_bodies_keys()})
+          move_keys(false), event_keys(false), body_keys<NetDef>("net", net_shapes(), "style.net_width_px"),
+          net_keys(), move_keys(true), event_keys(true), solver_keys(), solver_bodies_keys()})
         rows.insert(rows.end(), part.begin(), part.end());
     return rows;
 }

@@ -16,11 +16,16 @@ std::int64_t grid_particles(const GridDef& grid) {
     return std::int64_t{grid.columns} * grid.rows;
 }
 
-std::int64_t grid_bars(const GridDef& grid) {
+/// Along the rows and columns.
+std::int64_t grid_links(const GridDef& grid) {
     const std::int64_t columns = grid.columns;
     const std::int64_t rows = grid.rows;
-    const std::int64_t sides = (columns - 1) * rows + columns * (rows - 1);
-    return sides + (grid.has_diagonals ? 2 * (columns - 1) * (rows - 1) : 0);
+    return (columns - 1) * rows + columns * (rows - 1);
+}
+
+std::int64_t grid_bars(const GridDef& grid) {
+    const std::int64_t cells = std::int64_t{grid.columns - 1} * (grid.rows - 1);
+    return grid_links(grid) + (grid.has_diagonals ? 2 * cells : 0);
 }
 
 /// Empty if its size is not known.
@@ -65,6 +70,7 @@ void read_grid_pins(const TableReader& net, const GridDef& grid, NetDef& def) {
     if (const auto value = net.find("pinned"))
         def.pinned = read_pinned(*value, grid_particles(grid), index_of);
     def.moves = read_moves(net, def.pinned, index_of);
+    def.releases = read_releases(net, def.pinned, index_of);
 }
 
 /// By default the first.
@@ -73,6 +79,7 @@ void read_point_pins(const TableReader& net, std::int64_t particles, NetDef& def
     def.pinned = {0};
     if (const auto value = net.find("pinned")) def.pinned = read_pinned(*value, particles, index_of);
     def.moves = read_moves(net, def.pinned, index_of);
+    def.releases = read_releases(net, def.pinned, index_of);
 }
 
 std::optional<NetBar> read_bar(const Value& entry, const NetDef& def) {
@@ -156,10 +163,12 @@ NetDef read_net(const TableReader& net, const std::optional<BodySize>& size, Sha
         const auto grid = read_grid(table);
         read_grid_points(table, *grid, def, shape);
         read_grid_pins(net, *grid, def);
+        def.cuts = read_cuts(net, grid_links(*grid));
     } else {
         read_points(net, def.origin_m, def.points_m);
         read_bars(*net.find("bars"), def);
         read_point_pins(net, size->particles, def);
+        def.cuts = read_cuts(net, size->bars);
     }
     return def;
 }

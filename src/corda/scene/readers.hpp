@@ -175,5 +175,11 @@ using IndexOf = std::function<std::optional<std::uint32_t>(const Value&)>;
 [[nodiscard]] std::vector<MoveDef> read_moves(const TableReader& body,
                                               const std::vector<std::uint32_t>& pinned,
                                               const IndexOf& index_of);
+/// The pins that are let go.
+[[nodiscard]] std::vector<ReleaseDef> read_releases(const TableReader& body,
+                                                    const std::vector<std::uint32_t>& pinned,
+                                                    const IndexOf& index_of);
+/// The links that are cut, of so many.
+[[nodiscard]] std::vector<CutDef> read_cuts(const TableReader& body, std::int64_t links);
 
 }  // namespace corda::scene

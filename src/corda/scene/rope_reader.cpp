@@ -231,6 +231,11 @@ RopeDef read_rope(const TableReader& rope, const std::optional<BodySize>& size, 
     };
     if (const auto pinned = rope.find("pinned")) def.pinned = read_pinned(*pinned, size->particles, index_of);
     def.moves = read_moves(rope, def.pinned, index_of);
+    def.releases = read_releases(rope, def.pinned, index_of);
+    def.cuts = read_cuts(rope, def.closed ? size->particles : size->particles - 1);
+    if (def.closed && def.cuts.size() > 1)
+        rope.tables("cut")[1].add_problem("a closed rope is cut once; it is open from then on",
+                                          "give one cut, or an open rope");
     if (read_rope_shape(rope, def, shape)) read_link_lengths(rope, def);
     return def;
 }

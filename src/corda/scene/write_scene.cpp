@@ -94,15 +94,19 @@ std::optional<GridDef> grid_of(const NetDef& net) {
                    !net.bars.empty() && !net.bars.back().is_real};
 }
 
-void add_moves(const std::vector<MoveDef>& moves, Table& table) {
-    if (!moves.empty()) table.values.emplace_back("moves", toml_text(moves));
+/// Its lists of tables.
+template <class Body>
+void add_lists(const Body& body, Table& table) {
+    if (!body.moves.empty()) table.values.emplace_back("moves", toml_text(body.moves));
+    if (!body.releases.empty()) table.values.emplace_back("release", toml_text(body.releases));
+    if (!body.cuts.empty()) table.values.emplace_back("cut", toml_text(body.cuts));
 }
 
 Table rope_table(const RopeDef& rope, const BodyStyleDef& style, const ShapeDef& shape, std::size_t i) {
     const std::string path = fmt::format("rope[{}]", i);
     const auto with = [&](const char* name, const auto& def) {
         Table table = table_of("rope", path, {part(rope), part(style)}, {"points", "origin"});
-        add_moves(rope.moves, table);
+        add_lists(rope, table);
         table.inlined.push_back(
             table_of(fmt::format("rope.{}", name), fmt::format("{}.{}", path, name), {part(def)}));
         return table;
@@ -113,7 +117,7 @@ Table rope_table(const RopeDef& rope, const BodyStyleDef& style, const ShapeDef&
         if (const auto line = line_of(rope); line && gives(*line, rope)) return with("line", *line);
     }
     Table table = table_of("rope", path, {part(rope), part(style)});
-    add_moves(rope.moves, table);
+    add_lists(rope, table);
     return table;
 }
 
@@ -127,7 +131,7 @@ Table net_table(const NetDef& net, const BodyStyleDef& style, const ShapeDef& sh
         grid.reset();
     Table table = grid ? table_of("net", path, {part(net), part(style)}, {"points", "origin", "bars"})
                        : table_of("net", path, {part(net), part(style)});
-    add_moves(net.moves, table);
+    add_lists(net, table);
     if (!grid) return table;
     table.inlined.push_back(table_of("net.grid", path + ".grid", {part(*grid)}));
     return table;

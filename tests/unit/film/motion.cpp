@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,41 @@ TEST(Motions, HaveTheStatesOfARunAtRecordedTimesAndOthers) {
         expect_same(motion->at(time_s), run.state());
     }
     expect_same(motion->at(0.0), {0.0, motion->system.x_m, motion->system.y_m});
+}
+
+TEST(Motions, OfWhatIsLetGoHaveNoEnergyErrorAndNoJumpOfEnergy) {
+    const Scene scene = parse_scene(
+        "schema = 1\n[world]\nduration = 1\n[video]\nfps = 20\n[[rope]]\n"
+        "points = [[0, 0], [0.3, -0.4], [0.7, -0.5], [1.2, -0.5]]\nmass = [5, 1, 1, 1]\n"
+        "release = [{ pin = 0, t = 0.4 }]\n",
+        "a.toml");
+    RecordDef def;
+    def.fields.velocities = true;
+    def.times_s = {0.4 - 1e-9, 0.4};
+    const auto motion = simulate(scene, def);
+    EXPECT_FALSE(motion->diverges());
+    EXPECT_LT(motion->plan.error_estimate_m.value(), 1e-3);
+    for (const double time_s : {0.2, 0.4 - 1e-9, 0.4, 1.0}) {
+        motion->for_each({&time_s, 1}, [&](const State& state, const Figures& figures) {
+            EXPECT_EQ(figures.energy_error, std::nullopt);
+            const Energy energy = motion->energy_of(state);
+            EXPECT_NEAR(energy.kinetic_j + energy.potential_j(), 0.0, 1e-4) << time_s;
+        });
+    }
+}
+
+TEST(Motions, OfACutRopeAreDrawnByItsPartsInTheCamera) {
+    const Scene scene = parse_scene(
+        "schema = 1\n[world]\nduration = 1\n[video]\nfps = 20\n[[rope]]\n"
+        "points = [[0, 0], [0.3, -0.4], [0.7, -0.5], [1.2, -0.5]]\ncut = [{ link = 1, t = 0 }]\n"
+        "[style]\ncolor_by = \"tension\"\n",
+        "a.toml");
+    const auto motion = simulate(scene, {});
+    EXPECT_NEAR(motion->recording->bounds().min_m().y, -0.5 - 0.5 * 9.81, 1e-9);
+    // The tension of the link that is gone is in no scale.
+    EXPECT_EQ(motion->recording->figures(5).loads->largest_tension_n, motion->at(0.25).tension_n[0]);
+    EXPECT_EQ(motion->at(0.25).tension_n[1], 0.0);
+    EXPECT_LT(motion->recording->figures(20).strain, 1e-9);
 }
 
 TEST(Motions, AreReadInOrderOfTime) {

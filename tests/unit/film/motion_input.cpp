@@ -119,6 +119,9 @@ TEST(Notes, ReportVelocitiesOfPinnedParticles) {
 TEST(Notes, ReportPayloadOnAPinAndBendingWithoutAJoint) {
     EXPECT_THAT(notes_of("[[rope]]\npoints = [[0, 0], [1, -1], [2, 0]]\npinned = [0, -1]\npayload = 2\n"),
                 ElementsAre(HasSubstr("payload 2 kg changes nothing")));
+    EXPECT_THAT(notes_of("[[rope]]\npoints = [[0, 0], [1, -1], [2, 0]]\npinned = [0, -1]\npayload = 2\n"
+                         "release = [{ pin = -1, t = 1 }]\n"),
+                IsEmpty());
     EXPECT_THAT(notes_of("[[rope]]\npoints = [[0, 0], [1, -1]]\nbending = 2\n"),
                 ElementsAre(HasSubstr("bending changes nothing")));
 }

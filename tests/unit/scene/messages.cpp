@@ -53,6 +53,16 @@ moves = [{ path = [{ t = 0, by = [0, 0] }] }] | 4:10 rope[0].moves[0].pin | miss
 moves = [{ pin = 0, path = [{ t = 0, by = [1, 0] }] }] | 4:29 rope[0].moves[0].path[0] | a path starts at the place of its pin; give a first key with by = [0, 0] | [1, 0] => [0, 0]
 moves = [{ pin = 0, path = [{ t = 1, by = [0, 0] }, { t = 1, by = [1, 0] }] }] | 4:53 rope[0].moves[0].path[1] | 1 s after 1 s; give times that increase | t = 1, by = [1, 0] => t = 2, by = [1, 0]
 moves = [{ pin = 0, path = [{ t = 0, by = [0, 0] }] }, { pin = 0, path = [{ t = 0, by = [0, 0] }] }] | 4:64 rope[0].moves[1].pin | particle 0 moves already; put its waves and its path into one entry
+release = [{ pin = 1, t = 1 }] | 4:20 rope[0].release[0].pin | particle 1 is not pinned; add it to pinned, or give the index of a pinned one | pin = 1 => pin = 0 ; + pinned = [1]
+release = [{ pin = 0, t = 1 }, { pin = 0, t = 2 }] | 4:40 rope[0].release[1].pin | particle 0 is let go already; remove one | , { pin = 0, t = 2 } =>
+release = [{ pin = 0, t = -1 }] | 4:27 rope[0].release[0].t | -1 is not >= 0 | t = -1 => t = 1
+release = [{ pin = 0, t = inf }] | 4:27 rope[0].release[0].t | inf
+release = [{ pin = 0 }] | 4:12 rope[0].release[0].t | missing; give the time from which it is free | pin = 0 => pin = 0, t = 1
+release = [{ pin = 9, t = 1 }] | 4:20 rope[0].release[0].pin | 9 is out of range; the rope has particles
+cut = [{ link = 2, t = 1 }] | 4:17 rope[0].cut[0].link | 2 is out of range; it has links 0 .. 1, or -1 .. -2 from the end | link = 2 => link = 1
+cut = [{ link = 1, t = 1 }, { link = -1, t = 2 }] | 4:38 rope[0].cut[1].link | link 1 is cut already; remove one | link = -1 => link = 0
+cut = [{ link = 1, t = -1 }] | 4:24 rope[0].cut[0].t | -1 is not >= 0 | t = -1 => t = 1
+cut = [{ t = 1 }] | 4:8 rope[0].cut[0].link | missing; give the index of a link
 grid = 1 | 4:1 rope[0].grid | it is a key of net
 a.b.c.d.e.f.g.h.a.b.c.d.e.f.g.h.a.b.c.d.e.f.g.h.a.b.c.d.e.f.g.h.a = 1 | - | swing.toml:4:64: a key of more than 32 parts
 mass = | - | see https://toml.io for the syntax | mass = => mass = 1

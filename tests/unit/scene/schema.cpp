@@ -32,6 +32,12 @@ Scene scene_with(const Key& key, const std::string& value) {
         "}] }]\n";
     if (key.section.starts_with("rope.moves")) toml += moves;
     if (key.section.starts_with("net.moves")) toml = "schema = 1\n" + grid + moves;
+    for (const std::string list : {"release", "cut"}) {
+        const std::string events =
+            list + (list == "cut" ? " = [{ link = 0, t = 1 }]\n" : " = [{ pin = 0, t = 1 }]\n");
+        if (key.section == "rope." + list) toml += events;
+        if (key.section == "net." + list) toml = "schema = 1\n" + grid + events;
+    }
     if (key.section == "world.gusts") toml += "[world.gusts]\namplitude = [1, 0]\nfrequency = 1\n";
     if (key.section == "solver.bodies") toml += "[[solver.bodies]]\nropes = [0]\nmethod = \"exact\"\n";
     if (key.section == "solver.bodies" && key.name == "ropes")

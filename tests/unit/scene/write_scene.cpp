@@ -48,6 +48,9 @@ TEST(WriteScene, EveryKeyComesBack) {
                  "gusts = { amplitude = [2, 0.1], frequency = 0.4, phase_deg = 30 }\n"),
              scene::grid_with(
                  "moves = [{ pin = [2, 0], waves = [{ amplitude = [0, 1], frequency = 2 }] }]\n"),
+             scene::rope_with("pinned = [0, -1]\nrelease = [{ pin = -1, t = 0.1 }, { pin = 0, t = 0 }]\n"
+                              "cut = [{ link = -1, t = 1e-3 }]\n"),
+             scene::grid_with("release = [{ pin = [2, 0], t = 2 }]\ncut = [{ link = 3, t = 1 }]\n"),
              scene::square_with("origin = [0.1, 1e8]\nbending = 1e-3\n"),
              scene::grid_with(
                  "compliance = 1e-4\nstring = true\n[solver]\nmethod = \"relaxation\"\nreach = 3\n"),
