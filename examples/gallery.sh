@@ -25,9 +25,11 @@ while read -r name command times more; do
 done <<'END'
 bars            still  2.0
 bridge          still  0.6
+bridge_lets_go  strobe 0.5,1.3,1.7,2.2
 child           still  22
 cloth           still  1.5
 crane           still  5
+cut             strobe 0,0.35,0.6,0.8,1.0,1.2
 double_pendulum still  5.3
 fifty_pendulums still  7.2 --set overlay.time=true
 first           strobe 0,0.1,0.2,0.3,0.4,0.5,0.6
