@@ -297,6 +297,18 @@ TEST(MovingPin, PullsWithTheForceThatAcceleratesTheBob) {
     }
 }
 
+TEST(MovingPins, OfStringsAreWhereTheyGo) {
+    RopeDef rope = reference::straight_rope(3, 1.0, 10.0);
+    rope.material.is_string = true;
+    rope.moves = {{0, {{{0.1, 0.05}, 1.0, 0.0}}, {}}};
+    test::SolverRun<> run(rope, WorldDef{}, ExactDef{});
+    for (const double t : {0.1, 0.25, 0.5, 0.75}) {
+        ASSERT_TRUE(run.go(t));
+        EXPECT_NEAR(run.state().x_m[0], 0.1 * std::sin(2.0 * std::numbers::pi * t), 1e-14);
+        EXPECT_NEAR(run.state().y_m[0], 0.05 * std::sin(2.0 * std::numbers::pi * t), 1e-14);
+    }
+}
+
 TEST(MovingPins, CarryNetsAndStretchingRopes) {
     // Both pins of a bungee and of a cloth on one way; rattle checks exact.
     const MoveDef way{0, {{{0.1, 0.05}, 1.3, 20.0}}, {{0.2, {}}, {0.9, {0.3, 0.1}}}};

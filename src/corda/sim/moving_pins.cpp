@@ -28,6 +28,12 @@ class MovingFrame final : public Solver {
           place_{0.0, body_.x_m, body_.y_m, body_.vx_m_s, body_.vy_m_s} {}
 
     Status advance_to(double time_s, State& state) override {
+        // A solver need not write where pins rest.
+        for (std::size_t i = 0; i < body_.particle_count(); ++i) {
+            if (!body_.is_pinned(i)) continue;
+            state.x_m[i] = body_.x_m[i];
+            state.y_m[i] = body_.y_m[i];
+        }
         if (inside_->advance_to(time_s, state) == Status::kDiverged) return Status::kDiverged;
         const Vec2 moved_m = displacement_(time_s);
         for (double& x : state.x_m) x += moved_m.x;
