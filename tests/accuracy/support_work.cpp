@@ -68,6 +68,24 @@ TEST(MovingPin, DoesTheWorkThatTheEnergyGains) {
     }
 }
 
+TEST(MovingPin, DoesWorkUntilItIsLetGo) {
+    // On its own mass too, whose energy counts from the start.
+    RopeDef released = crane_rope();
+    released.releases = {{0, 0.7}};
+    RopeDef cut = crane_rope();
+    cut.cuts = {{4, 0.4}};
+    for (const RopeDef& rope : {released, cut}) {
+        for (const MethodDef& method : {MethodDef(ExactDef{1e-12}), MethodDef(RattleDef{8, 1.0 / 400.0})}) {
+            Simulation run(system_of(rope), WorldDef{}, method);
+            SupportWork work(system_of(rope), WorldDef{}, {&method, 1}, 1.0 / 60.0);
+            for (const double t : {0.3, 0.7, 1.5}) {
+                ASSERT_EQ(run.advance_to(t), Status::kOk);
+                EXPECT_NEAR(work.until_j(t), run.figures().energy_change_j, 2e-7) << t;  // 4.8e-8, of rattle
+            }
+        }
+    }
+}
+
 TEST(MovingPin, DoesTheWorkThatTheAirTakes) {
     // Drag c takes 2 c times the kinetic energy per second.
     WorldDef world;
