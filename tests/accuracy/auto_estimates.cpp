@@ -109,6 +109,7 @@ INSTANTIATE_TEST_SUITE_P(Of, AutoEstimates, testing::ValuesIn(test::rope_familie
 INSTANTIATE_TEST_SUITE_P(OfOther, AutoEstimates, testing::ValuesIn(test::other_families()), kName);
 INSTANTIATE_TEST_SUITE_P(OfMassesAndLinkages, AutoEstimates,
                          testing::ValuesIn(test::mass_and_linkage_families()), kName);
+INSTANTIATE_TEST_SUITE_P(OfEvents, AutoEstimates, testing::ValuesIn(test::event_families()), kName);
 INSTANTIATE_TEST_SUITE_P(OfLooks, AutoEstimates, testing::ValuesIn(test::look_families()), kName);
 INSTANTIATE_TEST_SUITE_P(OfDriven, AutoEstimates, testing::ValuesIn(test::driven_families()), kName);
 
@@ -155,8 +156,9 @@ class AutoEstimatesFound : public testing::TestWithParam<Found> {};
 TEST_P(AutoEstimatesFound, IsTrue) {
     const Found& found = GetParam();
     bool is_known = false;
-    for (const auto families : {test::rope_families(), test::other_families(),
-                                test::mass_and_linkage_families(), test::look_families()}) {
+    for (const auto families :
+         {test::rope_families(), test::other_families(), test::mass_and_linkage_families(),
+          test::look_families(), test::event_families()}) {
         for (const EstimateFamily& family : families) {
             if (family.name != std::string_view(found.family)) continue;
             is_known = true;
