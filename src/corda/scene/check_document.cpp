@@ -23,6 +23,85 @@ std::string other_home(std::string_view name) {
     return fmt::format("it is a key of {}", key->section.empty() ? "the top level" : key->section);
 }
 
+/// What to do in place of keys that people try and that do not exist, in any table.
+struct Wish {
+    std::string_view names;  ///< words between spaces
+    std::string_view instead;
+    std::string_view section = {};  ///< the only one that it is tried in; empty: any
+};
+constexpr Wish kWishes[] = {
+    {" width height ", "video.size is [width, height] in pixels", "video"},
+    {" frames length ", "world.duration in s and video.fps give the number of frames", "video"},
+    {" time length ", "world.duration is the duration in s", "world"},
+    {" floor ground wall walls obstacle obstacles collision collisions contact bounce ",
+     "ropes pass through everything: there are no floors, walls or collisions"},
+    {" drive driven motor actuator oscillate shake excitation ",
+     "moves of a rope or net moves a pinned particle: moves = [{ pin = 0, waves = [{ amplitude = [0.1, 0.0], "
+     "frequency = 1.0 }] }]"},
+    {" damping friction viscosity air_resistance resistance air_drag ",
+     "world.drag slows everything: velocities decay by exp(-drag t)"},
+    {" breeze storm air ", "world.wind is the velocity of the air, which acts through world.drag"},
+    {" stiffness spring spring_constant elasticity elastic young youngs_modulus ea modulus stretch ",
+     "compliance is the strain per newton of tension, 1/(E A); 0: links do not stretch"},
+    {" bending_stiffness flexural_rigidity rigidity ei ", "bending is the key for it, of a rope"},
+    {" fixed fix fixed_ends anchor anchors anchored attached attach pin pins ",
+     "pinned is the list of the particles that do not move: pinned = [0, -1]"},
+    {" ball bob load end_mass tip_mass bob_mass ",
+     "payload of a rope is the mass added to its last particle, in kg"},
+    {" density mass_per_length linear_density total_mass ", "mass is that of one particle, in kg"},
+    {" theta phi angle angles angle_rad angle0 initial_angle ",
+     "hang.angle_deg of a rope is its angle from straight down, in degrees"},
+    {" omega angular_velocity initial_velocity v0 ",
+     "velocity of a rope or net is that of its particles at the start, in m/s"},
+    {" thickness diameter radius line_width linewidth width ",
+     "width_px of a rope or net is its width in pixels"},
+    {" particle_count segments nodes n_links num_links link_count n ",
+     "hang.links and line.particles of a rope count its parts"},
+    {" end to ",
+     "hang gives a length and an angle, line a step from particle to particle; points = [[0, 0], [1, -1]] "
+     "any shape"},
+    {" name id ", "label of a rope or net is its name"},
+    {" resolution dimensions ", "video.size is [width, height] in pixels"},
+    {" frame_rate framerate frames_per_second rate ", "video.fps is the frames per second"},
+    {" t_end tmax t_max end_time sim_time total_time ", "world.duration is the duration in s"},
+    {" dt timestep time_step substeps ",
+     "methods choose their step by themselves; [solver] step sets that of rattle and relaxation"},
+    {" slowmo slow_motion slow playback_speed ", "video.speed = \"1/4\" is slow motion"},
+    {" motion_blur blur ", "video.shutter, 0 .. 1, blurs motion"},
+    {" zoom scale view viewport bounds ",
+     "camera.height is the height of the picture in m, camera.center its middle"},
+    {" bitrate quality ", "video.crf sets the quality of the encoder; 1 is the best"},
+    {" output file filename format ", "the command line names the output: corda render SCENE -o FILE"},
+    {" seed random noise samples ", "a sweep file varies a scene at random: see python3 -m corda sweep"},
+    {" include import extends ",
+     "a scene is one file; --set key=value changes it, and a sweep file varies it"},
+    {" gravity_y g ", "world.gravity is the gravity downwards in m/s2, or [gx, gy]"},
+    {" trail trails trace ", "style.trail_s is the time in s for which the path of a particle stays"},
+};
+
+std::string_view instead_of(std::string_view name, std::string_view section) {
+    const std::string word = fmt::format(" {} ", lower(name));
+    const auto* const found = std::ranges::find_if(kWishes, [&](const Wish& wish) {
+        return wish.names.find(word) != std::string_view::npos &&
+               (wish.section.empty() || wish.section == section);
+    });
+    return found == std::end(kWishes) ? std::string_view{} : found->instead;
+}
+
+/// "1,5" as "1.5"; empty for a text that is no number with a comma, or with a sign that is not ASCII.
+std::string number_meant(std::string text) {
+    constexpr std::string_view kMinus = "\xe2\x88\x92";
+    if (text.starts_with(kMinus)) text.replace(0, kMinus.size(), "-");
+    if (text.find_first_not_of("0123456789+-.,eE") != std::string::npos) return "";
+    if (std::ranges::count(text, ',') == 1) text[text.find(',')] = '.';
+    try {
+        const toml::table table = toml::parse("value = " + text);
+        return table.get("value")->is_number() ? text : "";
+    } catch (const toml::parse_error&) {
+        return "";
+    }
+}
+
 /// Checks a value of one key.
 class ValueChecker {
   public:
@@ -173,7 +252,22 @@ class ValueChecker {
     }
 
     bool fail_type(const toml::node& node, const std::string& path, std::string_view expected) const {
+        if (const std::string number = number_instead(node); !number.empty()) {
+            const bool has_comma = node.is_string() && node.as_string()->get().find(',') != std::string::npos;
+            return fail(node, path,
+                        fmt::format("{}, not {}{}", described(node), expected,
+                                    has_comma ? ": decimals need a point" : ""),
+                        "write " + number);
+        }
         return fail(node, path, fmt::format("{}, not {}", described(node), expected));
+    }
+
+    /// The number that a value of another type is meant to be; empty if there is none.
+    [[nodiscard]] std::string number_instead(const toml::node& node) const {
+        if (key_->type.kind != Kind::kNumber && key_->type.kind != Kind::kInteger) return "";
+        if (!key_->type.choices.empty()) return "";
+        if (node.is_string()) return number_meant(node.as_string()->get());
+        return is_whole(node) ? fmt::format("{:.0f}", number_of(node)) : "";
     }
 
     /// `hint`: a remedy that comes before that of the key.
@@ -215,6 +309,11 @@ class TableChecker {
             const std::string name = excerpt(key.str());
             if (const auto instead = replacement_of(dotted(section, key.str())); !instead.empty()) {
                 problems_->add(key.source(), dotted(path, name), "was removed", std::string(instead));
+                continue;
+            }
+            if (const std::string_view instead = instead_of(key.str(), section); !instead.empty()) {
+                problems_->add(key.source(), dotted(path, name), fmt::format("unknown key \"{}\"", name),
+                               std::string(instead));
                 continue;
             }
             std::vector<std::string_view> known;
@@ -286,6 +385,16 @@ class TableChecker {
     Problems* problems_;
 };
 
+/// A sweep file would have a problem per key.
+void refuse_sweep(const toml::table& document, Problems& problems) {
+    if (!document.contains("scene") || document.contains("rope") || document.contains("net")) return;
+    if (!document.contains("vary") && !document.contains("samples")) return;
+    problems.add(
+        document.source(), "", "this is a sweep file, not a scene",
+        "make its samples with: python3 -m corda sweep FILE -o FOLDER; or give the scene that it names");
+    problems.throw_if_any();
+}
+
 /// In a file of another schema any key may be right.
 void check_schema(const toml::table& document, Problems& problems) {
     const toml::value<std::int64_t>* const schema = document["schema"].as_integer();
@@ -300,6 +409,7 @@ void check_schema(const toml::table& document, Problems& problems) {
 
 void check_document(toml::table& document, Problems& problems) {
     check_schema(document, problems);
+    refuse_sweep(document, problems);
     TableChecker(problems).check(document, "", "");
     const bool has_bodies = document.contains("rope") || document.contains("net");
     if (!has_bodies && problems.is_sound("rope") && problems.is_sound("net"))

@@ -1,6 +1,9 @@
 #include "corda/scene/document.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdint>
 #include <exception>
 #include <istream>
 #include <streambuf>
@@ -80,6 +83,97 @@ class CancellableBuffer : public std::streambuf {
     std::size_t end_ = 0;
 };
 
+Place place_of(std::string_view text, std::size_t at, const std::string& source_name) {
+    const auto line = 1 + std::ranges::count(text.substr(0, at), '\n');
+    const std::size_t line_end = text.substr(0, at).rfind('\n');
+    std::size_t column = 1;
+    for (std::size_t i = line_end == std::string_view::npos ? 0 : line_end + 1; i < at; ++i)
+        column += is_continuation(text[i]) ? 0 : 1;
+    return {source_name, static_cast<std::size_t>(line), column, ""};
+}
+
+/// The first character outside of strings and comments that `is_it` takes, as an offset; npos if there is
+/// none.
+template <class Is>
+std::size_t find_bare(std::string_view text, const Is& is_it) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (is_it(i)) return i;
+        if (text[i] == '#') i = std::min(text.find('\n', i), text.size());
+        if (i < text.size() && (text[i] == '"' || text[i] == '\'')) i = skip_string(text, i) - 1;
+    }
+    return std::string_view::npos;
+}
+
+/// Refuses text of another encoding than UTF-8, which the parser would call a syntax error of its first byte.
+void refuse_other_encodings(std::string_view text, const std::string& source_name) {
+    const std::string_view start = text.substr(0, 4);
+    const bool has_mark = start.starts_with("\xff\xfe") || start.starts_with("\xfe\xff");
+    const bool has_zeros = start.size() >= 2 && (start[0] == '\0') != (start[1] == '\0');
+    if (has_mark || has_zeros)
+        fail_at({source_name, 1, 1, ""}, "the text is UTF-16", "save the file as UTF-8");
+    const std::string sound = utf8(text);  // with "\\x.." in the place of other bytes
+    std::size_t same = 0;
+    while (same < text.size() && text[same] == sound[same]) ++same;
+    if (same == text.size()) return;
+    fail_at(place_of(text, same, source_name),
+            fmt::format("the byte 0x{:02x} is not UTF-8 text", static_cast<unsigned char>(text[same])),
+            "save the file as UTF-8");
+}
+
+/// What is meant by a character that editors and web pages put in the place of one of ASCII.
+std::string_view meant_by(char32_t code) {
+    if (code == 0x2212 || (code >= 0x2010 && code <= 0x2015)) return "\"-\"";
+    if (code == 0x00ab || code == 0x00bb || (code >= 0x201c && code <= 0x201f)) return "'\"'";
+    if ((code >= 0x2018 && code <= 0x201b) || code == 0x00b4) return "\"'\"";
+    if (code == 0x00a0 || code == 0x202f || code == 0xfeff || (code >= 0x2000 && code <= 0x200d))
+        return "a space";
+    if (code == 0xff0c) return "\",\"";
+    if (code == 0xff1d) return "\"=\"";
+    return {};
+}
+
+/// Better words for a syntax error, of which the parser only knows the place, up to the end of its line.
+void explain_syntax(std::string_view text, std::size_t line, const std::string& source_name) {
+    std::size_t end = 0;
+    for (std::size_t i = 0; i < line && end < text.size(); ++i)
+        end = std::min(text.find('\n', end), text.size() - 1) + 1;
+    text = text.substr(0, end);
+    constexpr unsigned char kLastAscii = 0x7f;
+    const bool has_mark = text.starts_with("\xef\xbb\xbf");
+    const std::size_t foreign = find_bare(text, [&](std::size_t i) {
+        return static_cast<unsigned char>(text[i]) > kLastAscii && !(has_mark && i < 3);
+    });
+    if (foreign != std::string_view::npos) {
+        std::size_t length = 1;
+        while (foreign + length < text.size() && is_continuation(text[foreign + length])) ++length;
+        char32_t code = static_cast<unsigned char>(text[foreign]) & (0xffU >> (length + 1));
+        for (std::size_t i = 1; i < length; ++i)
+            code = (code << 6U) | (static_cast<unsigned char>(text[foreign + i]) & 0x3fU);
+        const std::string_view meant = meant_by(code);
+        fail_at(place_of(text, foreign, source_name),
+                fmt::format("the character U+{:04X} ({}) has no meaning outside of quotes",
+                            static_cast<std::uint32_t>(code), printable(text.substr(foreign, length))),
+                meant.empty() ? "put text in quotes" : fmt::format("write {}", meant));
+    }
+    // key = 1,5
+    const auto is_digit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
+    const std::size_t comma = find_bare(text, [&](std::size_t i) {
+        if (text[i] != ',' || i == 0 || !is_digit(i - 1) || !is_digit(i + 1)) return false;
+        const std::size_t begin = text.find_last_not_of("0123456789+-", i - 1);
+        const std::size_t equals =
+            begin == std::string_view::npos ? begin : text.find_last_not_of(" \t", begin);
+        return equals != std::string_view::npos && text[equals] == '=';
+    });
+    if (comma == std::string_view::npos) return;
+    const std::size_t first = text.find_last_not_of("0123456789+-", comma - 1) + 1;
+    std::string number(text.substr(first, text.find_first_not_of("0123456789", comma + 1) - first));
+    const std::string given = number;
+    number[comma - first] = '.';
+    fail_at(place_of(text, first, source_name),
+            fmt::format("\"{}\" is no number: decimals need a point", given),
+            fmt::format("write {}", number));
+}
+
 }  // namespace
 
 void check_file_bytes(const std::string& source_name, std::size_t bytes) {
@@ -118,14 +212,9 @@ std::size_t find_deep_key(std::string_view text) {
 toml::table parse_document(std::string_view text, const std::string& source_name) {
     check_file_bytes(source_name, text.size());
     const std::size_t deep = find_deep_key(text);
-    if (deep != std::string_view::npos) {
-        const auto line =
-            1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(deep), '\n');
-        const std::size_t line_end = text.substr(0, deep).rfind('\n');
-        const std::size_t column = line_end == std::string_view::npos ? deep + 1 : deep - line_end;
-        fail_at({source_name, static_cast<std::size_t>(line), column, ""},
-                fmt::format("a key of more than {} parts", kKeyParts), "give a key of the scene format");
-    }
+    if (deep != std::string_view::npos)
+        fail_at(place_of(text, deep, source_name), fmt::format("a key of more than {} parts", kKeyParts),
+                "give a key of the scene format");
     CancellableBuffer buffer(text);
     std::istream stream(&buffer);
     try {
@@ -135,6 +224,8 @@ toml::table parse_document(std::string_view text, const std::string& source_name
     } catch (const toml::parse_error& error) {
         buffer.check();
         const auto& begin = error.source().begin;
+        refuse_other_encodings(text, source_name);
+        explain_syntax(text, begin.line, source_name);
         fail_at({source_name, begin.line, begin.column, ""}, std::string(error.description()),
                 "see https://toml.io for the syntax");
     }

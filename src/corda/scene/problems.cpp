@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/text.hpp"
@@ -46,12 +47,20 @@ std::string described(const toml::node& node) {
         case toml::node_type::integer:
             return value_text(node) + " is an integer";
         case toml::node_type::floating_point:
-            return value_text(node) + " is a number with a fraction";
+            return is_whole(node) ? fmt::format("{:.1f} is a number with a point", number_of(node))
+                                  : value_text(node) + " is a number with a fraction";
         case toml::node_type::boolean:
             return value_text(node) + " is a boolean";
         default:
             return "this is a date or a time";
     }
+}
+
+bool is_whole(const toml::node& node) {
+    constexpr double kMost = 1e15;  // "3.0", not "3e20"
+    if (!node.is_floating_point()) return false;
+    const double value = number_of(node);
+    return std::abs(value) < kMost && value == std::trunc(value);
 }
 
 double number_of(const toml::node& node) {

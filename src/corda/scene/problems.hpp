@@ -24,6 +24,9 @@ namespace corda::scene {
 /// The value of an integer or a number, rounded to the nearest double. Requires one of them.
 [[nodiscard]] double number_of(const toml::node& node);
 
+/// Whether a node is an integer that is written with a point: 3.0.
+[[nodiscard]] bool is_whole(const toml::node& node);
+
 /// The problems of a scene, collected over the whole file.
 class Problems {
   public:

@@ -44,7 +44,15 @@ nets = 1 | 3:1 nets | did you mean "net"?
 [video]\nfbs = 1 | 4:1 video.fbs | did you mean "fps"?
 [style]\nbackgruond = 1 | 4:1 style.backgruond | did you mean "background"?
 [camera]\nfoo = 1 | 4:1 camera.foo | valid keys: center, height, margin
+[world]\nfloor = -1 | 4:1 world.floor | unknown key "floor"; ropes pass through everything: there are no floors
+[world]\nfriction = 1 | 4:1 world.friction | unknown key "friction"; world.drag slows everything | friction = 1 => drag = 1
+[video]\nwidth = 640 | 4:1 video.width | unknown key "width"; video.size is [width, height] in pixels | width = 640 => size = [640, 360]
 @rope
+drive = 1 | 4:1 rope[0].drive | unknown key "drive"; moves of a rope or net moves a pinned particle: moves = [{ pin = 0, waves = | drive = 1 => moves = [{ pin = 0, waves = [{ amplitude = [0.1, 0.0], frequency = 1.0 }] }]
+Stiffness = 1 | 4:1 rope[0].Stiffness | unknown key "Stiffness"; compliance is the strain per newton of tension
+mass = "1,5" | 4:8 rope[0].mass | "1,5" is a string, not a number: decimals need a point; write 1.5 | "1,5" => 1.5
+mass = "2" | 4:8 rope[0].mass | "2" is a string, not a number; write 2 | "2" => 2
+pinned = [0.0] | 4:11 rope[0].pinned[0] | 0.0 is a number with a point, not an integer; write 0 | 0.0 => 0
 strng = true | 4:1 rope[0].strng | did you mean "string"?
 moves = [{ pin = 1, path = [{ t = 0, by = [0, 0] }] }] | 4:18 rope[0].moves[0].pin | particle 1 is not pinned; add it to pinned, or give the index of a pinned one | pin = 1 => pin = 0 ; + pinned = [1]
 moves = [{ pin = 9, path = [{ t = 0, by = [0, 0] }] }] | 4:18 rope[0].moves[0].pin | 9 is out of range; the rope has particles
@@ -369,12 +377,46 @@ TEST(SceneMessages, OfSyntaxNameThePlace) {
              {"schema = \n", "swing.toml:1:10: ", "expected value"},
              {"schema = 1\nschema = 2\n", "swing.toml:2:", "cannot redefine"},
              {"a = [1,\n", "swing.toml:", "end-of-file"},
-             {"schema = 1\nx = \"\xff\"\n", "swing.toml:", "utf-8"},
+             {"schema = 1\nx = \"\xff\"\n",
+              "swing.toml:2:6: ", "the byte 0xff is not UTF-8 text; save the file as UTF-8"},
+             {"schema = 1\n# 80\xb0\n", "swing.toml:2:5: ", "the byte 0xb0 is not UTF-8 text"},
+             {std::string("\xff\xfes\0c\0", 6),
+              "swing.toml:1:1: ", "the text is UTF-16; save the file as UTF-8"},
+             {std::string("\xfe\xff\0s\0c", 6), "swing.toml:1:1: ", "the text is UTF-16"},
+             {std::string("s\0c\0h\0", 6), "swing.toml:1:1: ", "the text is UTF-16"},
+             {"# é\nschema = \u22121\n", "swing.toml:2:10: ",
+              "the character U+2212 (\u2212) has no meaning outside of quotes; write \"-\""},
+             {"schema = 1\n[style]\ntheme = \u201cdark\u201d\n",
+              "swing.toml:3:9: ", "U+201C (\u201c) has no meaning outside of quotes; write '\"'"},
+             {"schema\u00a0= 1\n", "swing.toml:1:7: ", "U+00A0"},
+             {"schema = 1\nl\u00e4nge = 1\n",
+              "swing.toml:2:2: ", "U+00E4 (\u00e4) has no meaning outside of quotes; put text in quotes"},
+             {"schema = 1\n[world]\nduration = -1,5\n",
+              "swing.toml:3:12: ", "\"-1,5\" is no number: decimals need a point; write -1.5"},
+             {"rope = [{ hang = { links = 3, length = 1,0, angle_deg = 4 } }]\n",
+              "swing.toml:1:40: ", "\"1,0\" is no number: decimals need a point; write 1.0"},
              {std::string("schema\0= 1\n", 11), "swing.toml:1:", ""},
              {"schema = " + std::string(100'000, '['), "swing.toml:1:", "nest"}}) {
         EXPECT_EQ(error_of(toml).code, ExitCode::kInvalidScene);
         EXPECT_THAT(error_of(toml).message, testing::AllOf(StartsWith(begin), HasSubstr(part)));
     }
+}
+
+TEST(SceneMessages, OfASweepAreOne) {
+    EXPECT_EQ(
+        error_of("schema = 1\nscene = \"small.toml\"\nsamples = 12\n[vary]\n\"rope[0].mass\" = [1, 2]\n")
+            .message,
+        "swing.toml:1:1: this is a sweep file, not a scene; make its samples with: python3 -m corda sweep "
+        "FILE "
+        "-o "
+        "FOLDER; or give the scene that it names");
+}
+
+TEST(SceneMessages, OfSettingsNameWhatIsMeant) {
+    EXPECT_THAT(error_of(with(""), {"rope[0].hang.angle_deg=\u221240"}).message,
+                HasSubstr("is a string, not a number; write -40"));
+    EXPECT_THAT(error_of(with(""), {"world.duration=1,5"}).message,
+                HasSubstr("decimals need a point; write 1.5"));
 }
 
 TEST(SceneMessages, DeepDottedKeysAreRefusedBeforeTheParserRecurses) {

@@ -13,7 +13,7 @@
     sweep[12]["frames"], len(sweep), sweep.shard(0, 8)
 
 Coordinates are in metres, y up; times in seconds. Failures raise corda.Error, whose `code` is the exit code of
-the program (`corda --help` lists them). Pictures are arrays of RGBA bytes, sRGB, with straight alpha.
+the program (`corda help codes` lists them). Pictures are arrays of RGBA bytes, sRGB, with straight alpha.
 """
 
 import atexit as _atexit

@@ -103,7 +103,8 @@ def _described(value):
     if isinstance(value, int):  # hexadecimal ones may have more digits than Python prints
         return f"{value} is an integer" if -2**63 <= value < 2**63 else "this is an integer beyond 64 bits"
     if isinstance(value, float):
-        return f"{number_text(value)} is a number with a fraction"
+        is_whole = value == math.trunc(value) if math.isfinite(value) else False
+        return f"{value:.1f} is a number with a point" if is_whole and abs(value) < 1e15 else f"{number_text(value)} is a number with a fraction"
     return "this is a date or a time"
 
 
