@@ -123,14 +123,33 @@ golden::SuiteResult run_until_asked(golden::SuiteDef& def) {
     }
 }
 
+/// Refuses to replace a file that is no report, which has `mark` in its first lines, unless `force` is set.
+void check_report(const std::string& path, std::string_view mark, bool force) {
+    constexpr std::size_t kHeadBytes = 400;
+    std::error_code none;
+    const bool is_file = std::filesystem::is_regular_file(path, none);
+    const std::string text = is_file ? file_bytes(path) : "";
+    const bool is_report = text.substr(0, kHeadBytes).find(mark) != std::string::npos;
+    check_output(path, "", force || text.empty() || is_report);
+}
+
+/// A step summary of CI has what earlier steps and commands wrote.
+void append_markdown(const std::string& path, const std::string& text) {
+    std::error_code none;
+    const std::string before = std::filesystem::is_regular_file(path, none) ? file_bytes(path) : "";
+    save_file(path, before + (before.empty() ? "" : "\n") + text);
+}
+
 void check_options(const GoldenOptions& options) {
     const golden::SuiteDef& def = options.def;
     const auto refuse = [](const char* text) { throw Error(ExitCode::kUsage, text); };
-    if (def.force && !def.update) refuse("--force says how --update works; add --update");
+    if (def.force && !def.update && options.html.empty() && options.junit.empty())
+        refuse("--force says how --update and reports replace files; add --update, --html or --junit");
     if (def.dry_run && !def.update && def.accepted.empty())
         refuse("--dry-run says what --update or --accept would change; add one of them");
-    for (const std::string& path : {options.junit, options.html, options.markdown})
-        if (!path.empty()) check_output(path, "", true);
+    if (!options.html.empty()) check_report(options.html, "Golden pictures", def.force);
+    if (!options.junit.empty()) check_report(options.junit, "<testsuites", def.force);
+    if (!options.markdown.empty()) check_output(options.markdown, "", true);
     if (def.new_folder.empty()) return;
     std::error_code none;
     if (std::filesystem::equivalent(def.new_folder, def.folder, none))
@@ -171,7 +190,7 @@ ExitCode run_suite(const Console& console, GoldenOptions options) {
     const CancelScope finishing({}, CancelScope::Outer::kIgnored);  // an update has been published
     if (!options.junit.empty()) save_file(options.junit, golden::junit_xml(result));
     if (!options.html.empty()) save_file(options.html, golden::page_html(result));
-    if (!options.markdown.empty()) save_file(options.markdown, golden::markdown(result));
+    if (!options.markdown.empty()) append_markdown(options.markdown, golden::markdown(result));
     tell(console, options, result);
     if (result.count(Verdict::kInvalid) > 0) return ExitCode::kInvalidScene;
     bool failed = std::ranges::any_of(result.pictures, &Checked::failed);
@@ -204,9 +223,10 @@ void add_golden(CLI::App& app, Action& action) {
                                           "write pictures that are missing or differ, and remove stale ones");
     command.add_flag("--dry-run", options.def.dry_run,
                      "with --update or --accept: only say what would change");
-    command.add_flag(
-        "--force", options.def.force,
-        "with --update: also replace files that are no PNG, and remove pictures without a record");
+    command.add_flag("--force", options.def.force,
+                     "with --update: also replace files that are no PNG, and remove pictures without a "
+                     "record; with --html "
+                     "and --junit: replace files that are no such reports");
     auto* const fresh = command
                             .add_option("--new", options.def.new_folder,
                                         "also write the failed pictures to this folder, for --accept")
@@ -227,7 +247,7 @@ void add_golden(CLI::App& app, Action& action) {
     command.add_option("--html", options.html,
                        "also write a page of the failed pictures: reference, new and difference");
     command.add_option("--markdown", options.markdown,
-                       "also write the failures as Markdown to this file, for a pull request");
+                       "also append the failures as Markdown to this file, such as a step summary of CI");
     command.add_option("--junit", options.junit, "also write the results as JUnit XML to this file");
     command.add_option("--set", options.def.settings, "key=value in place of what the scenes say")
         ->type_name("KEY=VALUE");
