@@ -1,5 +1,9 @@
 #pragma once
 
+#if defined(__cplusplus) && __cplusplus < 202002L
+#error "Corda needs C++20: compile with -std=c++20, or target_compile_features(... cxx_std_20)"
+#else
+
 /// The public library of Corda: load or build a scene, simulate it, draw frames, write stills and video, and
 /// compare pictures.
 ///
@@ -10,6 +14,10 @@
 ///     corda::render_video(film, "swing.mp4");
 ///
 /// Errors are corda::Error, with code() and what(). Coordinates are in metres, y up; times in seconds.
+
+// X11 defines words that are names here.
+#pragma push_macro("Status")
+#undef Status
 
 #include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
@@ -22,3 +30,6 @@
 #include "corda/sim/simulation.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/defs.hpp"
+
+#pragma pop_macro("Status")
+#endif

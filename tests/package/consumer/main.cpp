@@ -1,7 +1,9 @@
 // Renders a scene with the installed library: a still, a video, and the comparison of the still with another.
 // Usage: consumer SCENE.toml STILL.png OUT.mp4; exits with 0 if still and film agree.
 
+#define Status int  // as <X11/Xlib.h> does
 #include <corda/corda.hpp>
+#undef Status
 #include <cstdio>
 
 int main(int argc, char** argv) try {
