@@ -92,7 +92,8 @@ TEST(Init, TakesANewNameAndReplacesNothing) {
     const test::ScratchFolder folder;
     EXPECT_EQ(init_in(folder, "mine.toml").out, "mine.toml\n");
     EXPECT_EQ(test::read_file(folder.file("mine.toml")), test::read_file(kFolder + "start.toml"));
-    EXPECT_THAT(init_in(folder, "mine --force").err, testing::Not(HasSubstr("no example")));
+    EXPECT_THAT(init_in(folder, "mine.toml --force").err, testing::Not(HasSubstr("no example")));
+    EXPECT_THAT(init_in(folder, "mine --force").err, HasSubstr("there is no example mine, and mine.toml is"));
     EXPECT_THAT(init_in(folder, "hamock").err, HasSubstr("for the example hammock: corda init hammock"));
     const std::string own = folder.write("whip.toml", "schema = 1\n");
     const auto refused = init_in(folder, "whip");

@@ -20,7 +20,7 @@ TEST(Help, EqualsTheHelpOption) {
     const auto general = run_corda({"help"});
     EXPECT_EQ(general.exit_code, 0);
     EXPECT_EQ(general.out, run_corda({"--help"}).out);
-    EXPECT_THAT(general.out, HasSubstr("Exit codes:"));
+    EXPECT_THAT(general.out, AllOf(HasSubstr("corda help codes"), Not(HasSubstr("Exit codes:"))));
     const auto still = run_corda({"help", "still"});
     EXPECT_EQ(still.exit_code, 0);
     EXPECT_EQ(still.out, run_corda({"still", "--help"}).out);
@@ -39,6 +39,17 @@ TEST(Help, ListsTheKeysOfAScene) {
     EXPECT_THAT(scene::keys_text("overlay.texts"), AllOf(HasSubstr("from"), Not(HasSubstr("trail_s"))));
     const auto help = nlohmann::json::parse(run_corda({"help", "scene", "--json"}).out);
     EXPECT_EQ(help.at("help"), scene::keys_text());
+}
+
+TEST(Help, FindsKeysTablesOptionsAndTopics) {
+    EXPECT_THAT(run_corda({"help", "codes"}).out, AllOf(HasSubstr("Exit codes:\n    0  "), HasSubstr("130")));
+    EXPECT_THAT(
+        run_corda({"help", "wind"}).out,
+        AllOf(HasSubstr("world.wind: [vx, vy], m/s; the velocity of the air"), Not(HasSubstr("style."))));
+    EXPECT_THAT(run_corda({"help", "trail_s"}).out, HasSubstr("style.trail_s: "));
+    EXPECT_THAT(run_corda({"help", "style.trail_s"}).out, testing::StartsWith("style.trail_s: "));
+    EXPECT_THAT(run_corda({"help", "Friction"}).exit_code, 2);
+    EXPECT_THAT(run_corda({"help", "resume"}).out, HasSubstr("corda render --resume: "));
 }
 
 TEST(Help, HasTheCommandsAndOptionsOfTheReadme) {

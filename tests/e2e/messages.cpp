@@ -44,6 +44,9 @@ render SCENE -o DIR/a.mp4 --no-such-flag | 2 | unknown option --no-such-flag
 {render,still,simulate,plan,golden,compare} EMPTY -o DIR/a.mp4 | 2 | is empty
 render SCENE {-o,--set,--fps,--frames,--size,--backend} EMPTY | 2 | is empty; give one, or leave it out
 still SCENE -o DIR {--at,--frame} EMPTY | 2 | is empty
+still SCENE -o DIR/a.png --at 0:1:0.25 | 2 | --at 0:1:0.25: is no time in s; list times such as 0,0.25,0.5 | 0:1:0.25 => 0
+still SCENE -o DIR/a.png --at soon | 2 | --at soon: is no time in s; give one or more | soon => 0
+help nothing_like_that | 2 | there is no help on "nothing_like_that" | nothing_like_that => codes
 compare SCENE SCENE --max EMPTY | 2 | --max: "" is not a number
 compare SCENE SCENE --diff EMPTY | 2 | is empty
 help EMPTY | 2 | TOPIC: the value is empty

@@ -45,7 +45,7 @@ TEST_F(Names, AreBytesAsFilesAndEscapedElsewhere) {
     EXPECT_EQ(title.out, "caf\\xe9\\x1b[31m\n");
 
     const auto still = run_corda({"still", scene, "--at", "0", "-o", folder_.path()});
-    const std::string picture = folder_.file("caf\xe9\x1b[31m_t0000_000000.png");
+    const std::string picture = folder_.file("caf\xe9\x1b[31m_0.0s.png");
     EXPECT_EQ(still.out, picture + "\n");  // a script needs the unchanged name
     EXPECT_EQ(read_png_info(picture).text[1],
               std::pair(std::string("Title"), std::string("caf\\xe9\\x1b[31m")));

@@ -187,12 +187,11 @@ TEST_F(Video, StillsAreTheFramesBeforeEncodingByteForByte) {
     ASSERT_EQ(run_corda({"still", scene_, "--frame", "22", "-o", folder_.file("frame.png")}).exit_code, 0);
     // The frames of the video, drawn in order as by `render`.
     Film film(load_scene(scene_));
-    const std::map<int, std::string> stills{
-        {0, "0000_000000"}, {3, "0000_100000"}, {15, "0000_500000"}, {22, "0000_733333"}};
+    const std::map<int, std::string> stills{{0, "0.000"}, {3, "0.100"}, {15, "0.500"}, {22, "0.733"}};
     for (int k = 0; k <= 22; ++k) {
         const Image frame = film.frame(k);
         if (!stills.contains(k)) continue;
-        const std::string path = folder_.file("at/scene_t" + stills.at(k) + ".png");
+        const std::string path = folder_.file("at/scene_" + stills.at(k) + "s.png");
         EXPECT_TRUE(test::equal_images(read_png(path), frame)) << path;
     }
     EXPECT_TRUE(test::equal_images(read_png(folder_.file("frame.png")), film.frame(22)));
@@ -215,10 +214,10 @@ TEST_F(Video, StillsAcceptFrameRanges) {
     EXPECT_EQ(written, wanted);
 }
 
-TEST_F(Video, StillsHaveNamesWithOneDot) {
+TEST_F(Video, StillsHaveTheirTimesAsNames) {
     const std::string scene = folder_.write("my.scene.v2.toml", test::read_file(scene_));
     const auto result = run_corda({"still", scene, "--at", "0.25", "-o", folder_.path(), "--size", "32x32"});
-    EXPECT_EQ(result.out, folder_.file("my_scene_v2_t0000_250000.png") + "\n");
+    EXPECT_EQ(result.out, folder_.file("my_scene_v2_0.25s.png") + "\n");
 }
 
 TEST_F(Video, StillsRecordTitleTimeAndResolution) {

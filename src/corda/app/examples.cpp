@@ -75,11 +75,16 @@ ExitCode write_scene(const Console& console, const InitOptions& options) {
                            find_example(std::filesystem::path(scene).stem().string())->text);
     for (const auto& [file_path, text] : files) check_output(file_path, {}, options.force);
     for (const auto& [file_path, text] : files) save_file(file_path, text, {.force = options.force});
-    if (const auto meant = misspelt_example(name); meant && named == nullptr)
-        console.warning(
-            fmt::format("there is no example {}, and {} is the scene to start from; for the example "
-                        "{}: corda init {}",
-                        name, path, *meant, *meant));
+    // A name that may be an example's is told from the name of a file.
+    const bool is_file = options.name == "scene" || is_toml || options.name != name;
+    if (named == nullptr && !is_file) {
+        const std::string text =
+            fmt::format("there is no example {}, and {} is the scene to start from", name, path);
+        if (const auto meant = misspelt_example(name))
+            console.warning(fmt::format("{0}; for the example {1}: corda init {1}", text, *meant));
+        else
+            console.info(text + "; corda examples lists them");
+    }
     const std::string stem = path.substr(0, path.size() - std::string_view(".toml").size());
     console.info(
         scene.empty()

@@ -225,8 +225,7 @@ void add_golden(CLI::App& app, Action& action) {
                      "with --update or --accept: only say what would change");
     command.add_flag("--force", options.def.force,
                      "with --update: also replace files that are no PNG, and remove pictures without a "
-                     "record; with --html "
-                     "and --junit: replace files that are no such reports");
+                     "record; with --html and --junit: replace files that are no such reports");
     auto* const fresh = command
                             .add_option("--new", options.def.new_folder,
                                         "also write the failed pictures to this folder, for --accept")

@@ -1,3 +1,4 @@
+#include <cctype>
 #include <memory>
 
 #include <fmt/format.h>
@@ -77,6 +78,51 @@ std::string manual_page(const CLI::App& app) {
 
 constexpr std::string_view kSceneTopic = "scene";
 constexpr std::string_view kManualTopic = "man";
+constexpr std::string_view kCodesTopic = "codes";
+
+std::string exit_code_table() {
+    std::string text = "Exit codes:\n";
+    for (const ExitCodeText& row : kExitCodes)
+        text += fmt::format("  {:>3}  {}\n", static_cast<int>(row.code), row.meaning);
+    return text;
+}
+
+/// Whether a text has these words as a whole.
+bool has_words(const std::string& text, const std::string& words) {
+    const auto is_part = [&](std::size_t i) {
+        return i < text.size() && std::isalnum(static_cast<unsigned char>(text[i])) != 0;
+    };
+    for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1))
+        if (!(at > 0 && is_part(at - 1)) && !is_part(at + words.size())) return true;
+    return false;
+}
+
+/// The lines of the keys whose path, unit or description have a word, each with its table; empty if there are
+/// none.
+std::string keys_about(const std::string& word) {
+    std::string text;
+    for (const scene::Key& key : scene::all_keys()) {
+        const std::string words = lower(fmt::format("{} {} {}", scene::path_of(key), key.meaning, key.note));
+        if (!has_words(words, lower(word))) continue;
+        const std::string range = scene::range_text(key);
+        text += fmt::format("{}: {}{}; {}\n", scene::path_of(key), scene::type_text(key),
+                            key.unit.empty() ? "" : fmt::format(", {}", key.unit), key.meaning);
+        if (!range.empty()) text.insert(text.size() - 1, ", " + range);
+        if (!key.note.empty()) text.insert(text.size() - 1, fmt::format(" ({})", key.note));
+    }
+    return text;
+}
+
+/// The same of the options of all commands.
+std::string options_about(const CLI::App& app, const std::string& word) {
+    std::string text;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        for (const CLI::Option* option : command->get_options())
+            if (option->check_lname(lower(word)))
+                text += fmt::format("corda {} --{}: {}\n", command->get_name(), lower(word),
+                                    option->get_description());
+    return text;
+}
 
 /// The text of `--help`. CLI::App::help would give that of the command that is running.
 std::string help_of(const CLI::App& app) {
@@ -89,14 +135,17 @@ std::string text_about(const CLI::App& app, const std::string& topic) {
     if (topic.empty()) return help_of(app);
     if (topic == kSceneTopic) return scene::keys_text();
     if (topic == kManualTopic) return manual_page(app) + "\n";
+    if (topic == kCodesTopic) return exit_code_table();
     std::string keys = scene::keys_text(topic);
     if (const CLI::App* const command = find_command(app, topic))
         return help_of(*command) + (keys.empty() ? "" : "\n" + keys);
     if (!keys.empty()) return keys;
     if (const auto replacement = replacement_of(topic); !replacement.empty())
         throw_usage("\"{}\" was removed; {}", topic, replacement);
+    if (std::string found = options_about(app, topic) + keys_about(topic); !found.empty()) return found;
     std::vector<std::string> topics = command_names(app);
     topics.emplace_back(kSceneTopic);
+    topics.emplace_back(kCodesTopic);
     topics.emplace_back(kManualTopic);
     throw_usage("there is no help on \"{}\"; {}", topic, advice(topic, topics));
 }
@@ -108,8 +157,8 @@ void add_help(CLI::App& app, Action& action) {
     const auto topic = std::make_shared<std::string>();
     command->add_option(
         "TOPIC", *topic,
-        "a command; scene: the keys of a scene file; one of its tables, such as style or overlay.texts; "
-        "man: the manual page");
+        "a command; scene: the keys of a scene file; one of its tables, such as style or overlay.texts; any "
+        "other word: keys and options about it; codes: the exit codes; man: the manual page");
     command->callback([&app, &action, topic] {
         action = [&app, topic](const Console& console) {
             const std::string text = text_about(app, *topic);

@@ -24,13 +24,6 @@
 namespace corda::app {
 namespace {
 
-std::string exit_code_table() {
-    std::string text = "Exit codes:\n";
-    for (const ExitCodeText& row : kExitCodes)
-        text += fmt::format("  {:>3}  {}\n", static_cast<int>(row.code), row.meaning);
-    return text;
-}
-
 void add_console_flags(CLI::App& app, ConsoleDef& def) {
     for (CLI::App* command : app.get_subcommands({})) {
         command->add_flag("--json", def.json, "print the result as JSON on standard output");
@@ -146,7 +139,7 @@ int run(int argc, char** argv) {
         "screen."};
     app.set_version_flag("--version", "corda " CORDA_VERSION);
     app.require_subcommand(1);
-    app.footer(exit_code_table());
+    app.footer("More: corda help codes (exit codes), corda help scene (keys of scenes), corda help WORD");
     Action action;
     ConsoleDef console_def;
     for (AddCommand* const add : kCommands) add(app, action);

@@ -21,6 +21,7 @@
 #include "corda/core/timeline.hpp"
 #include "corda/film/film.hpp"
 #include "corda/film/plan_text.hpp"
+#include "corda/view/overlay.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -33,7 +34,8 @@ constexpr double kPrintPpi = 300.0;
 struct PictureOptions {
     SceneOptions scene;
     FilmDef film;
-    std::vector<double> times_s;
+    std::vector<std::string> at;
+    std::vector<double> times_s;  ///< those of `at`, once they are read
     std::vector<std::string> frames;
     std::string output;
     std::optional<double> width_mm;
@@ -45,10 +47,22 @@ struct PictureOptions {
     bool dry_run = false;
 
     /// Throws CLI::RequiredError if there is no scene, or no moment that is not that of `--from`.
-    void require() const {
+    void require() {
         scene.require();
+        for (const std::string& word : at) times_s.push_back(time_of(word));
         if (scene.from.empty() && times_s.empty() && frames.empty())
             throw CLI::RequiredError("--at or --frame");
+    }
+
+    /// The time of a word of `--at`. Throws corda::Error (kUsage) for one that is no number.
+    static double time_of(const std::string& word) {
+        double time_s = 0.0;
+        if (CLI::detail::lexical_cast(word, time_s)) return time_s;
+        if (word.find(':') != std::string::npos)
+            throw_usage(
+                "--at {}: is no time in s; list times such as 0,0.25,0.5, or take frames, as in --frame 0:30",
+                word);
+        throw_usage("--at {}: is no time in s; give one or more, such as 0,0.5,1.25", word);
     }
 };
 
@@ -301,20 +315,25 @@ bool is_picture(const std::string& output) {
         output);
 }
 
-/// Its name in a folder: names sort by time and have one dot, so that no program takes a part of the time for
-/// the ending.
-std::string name_of(const RequestedTime& time, const std::string& scene) {
-    std::string name = time.frame ? fmt::format("{}_f{:06}", scene, *time.frame)
-                                  : fmt::format("{}_t{:011.6f}", scene, time.time_s);
-    std::ranges::replace(name, '.', '_');
-    return name + ".png";
+/// The names of stills in a folder, "swing_0.5s.png", which sort by time.
+std::vector<Picture> named(const std::vector<RequestedTime>& times, std::string scene) {
+    std::ranges::replace(scene, '.', '_');
+    std::vector<std::string> digits = view::digits_of(times_of(times));
+    std::size_t longest = 0;
+    for (const std::string& text : digits) longest = std::max(longest, text.size());
+    std::vector<Picture> stills;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        digits[i].insert(0, longest - digits[i].size(), '0');
+        stills.push_back({times[i].frame ? fmt::format("{}_f{:06}.png", scene, *times[i].frame)
+                                         : fmt::format("{}_{}s.png", scene, digits[i]),
+                          {times[i]}});
+    }
+    return stills;
 }
 
 std::vector<Picture> stills_of(const Request& request) {
     const PictureOptions& options = request.options;
-    std::vector<Picture> stills;
-    for (const RequestedTime& time : request.times)
-        stills.push_back({name_of(time, request.scene.name), {time}});
+    std::vector<Picture> stills = named(request.times, request.scene.name);
     const auto same = std::ranges::adjacent_find(stills, {}, &Picture::path);
     if (same != stills.end()) throw_usage("two stills would both be {}; ask for each time once", same->path);
     if (is_picture(options.output)) {
@@ -370,13 +389,15 @@ ExitCode draw_sheet(const Console& console, const PictureOptions& options) {
 void add_options(CLI::App& command, PictureOptions& options, const std::string& output_help) {
     add_scene(command, options.scene);
     add_from(command, options.scene);
-    auto* at = command.add_option("--at", options.times_s, "times in seconds, e.g. 0,0.5,1.25")
+    auto* at = command.add_option("--at", options.at, "times in seconds, e.g. 0,0.5,1.25")
                    ->delimiter(',')
+                   ->allow_extra_args(false)  // the scene may follow
                    ->type_name("T[,T...]");
     auto* frame =
         command
             .add_option("--frame", options.frames, "frames of the video from 0, or ranges FIRST <= k < END")
             ->delimiter(',')
+            ->allow_extra_args(false)
             ->type_name("K|FIRST:END[,...]");
     at->excludes(frame);
     command.add_option("-o,--output", options.output, output_help)->required();

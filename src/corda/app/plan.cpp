@@ -78,7 +78,10 @@ void report_in_words(const Console& console, const Film& film, const std::vector
     for (const std::string& term : terms) console.result("modelled: " + term);
     report_methods(console, film);
     const Plan& plan = film.plan();
-    if (const auto estimate = error_estimate_text(film)) console.result("error estimate: " + *estimate);
+    if (const auto estimate = error_estimate_text(film))
+        console.result("error estimate: " + *estimate);
+    else
+        console.result("error estimate: none; method auto tries tighter runs and tells how far they differ");
     for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
         const auto reason = horizon_reason(plan.bodies[i]);
         if (!reason) continue;

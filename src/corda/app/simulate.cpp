@@ -166,8 +166,10 @@ std::string cost_text(const Film& film) {
 /// Writes the states of all frame times as CSV; without a file, only simulates.
 void write_states(const Console& console, const Film& film, const SimulateOptions& options, OutputFile* csv) {
     Progress progress(console, "simulate", film.last_frame() + 1);
-    if (csv != nullptr)
+    if (csv != nullptr) {
+        if (options.style == CsvStyle::kComma) csv->write("\xef\xbb\xbf");  // Excel reads UTF-8 by it
         csv->write(csv_header(named_in_files(film.scene(), film.system()), options.columns, options.style));
+    }
     CsvLine line(options.style);
     const film::Motion& motion = film.motion();
     const film::SeriesSource source(motion);
@@ -308,7 +310,8 @@ void add_simulate(CLI::App& app, Action& action) {
             [&style = options.style](const std::string& word) {
                 style = word == "comma" ? CsvStyle::kComma : CsvStyle::kPoint;
             },
-            "decimal sign of CSV: point, or comma with semicolons between the cells")
+            "decimal sign of CSV: point, or comma with semicolons between the cells and a byte order mark, "
+            "as Excel needs them")
         ->check(CLI::IsMember({"point", "comma"}))
         ->type_name("point|comma");
     command.add_flag("--force", options.force, "replace an existing output");

@@ -263,6 +263,9 @@ Provenance read_provenance(const std::string& path) {
     if (path.ends_with(".toml")) throw_usage("'{}' is a scene file; give it without --from", path);
     const std::string kind = media::file_kind(path);
     if (kind == "gif") fail_at(path, "is a GIF, which carries no provenance");
+    const media::ForeignKind* const foreign = media::foreign_kind_of(path);
+    if (foreign != nullptr && foreign->remedy == media::kConvertToPng)
+        fail_at(path, fmt::format("is {}, which carries no scene", foreign->words));
     PngTexts png;
     if (media::is_png(path))
         png = texts_in(read_png_info(path));

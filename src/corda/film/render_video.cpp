@@ -23,10 +23,25 @@
 #include "corda/media/encode/frame_maker.hpp"
 #include "corda/media/encode/probe.hpp"
 #include "corda/media/write/video_file.hpp"
+#include "corda/scene/write_scene.hpp"
 #include "corda/view/colors.hpp"
 
 namespace corda {
 namespace {
+
+/// Why a picture with this record is not of this scene.
+std::string difference_text(const Scene& scene, const Provenance& made) {
+    if (made.corda.empty()) return "it has no record of its scene";
+    if (made.corda != version())
+        return fmt::format("corda {} made it, and this is {}", made.corda, version());
+    try {
+        const auto changes = differences(values_of(scene), values_of(scene_of(made, "it")));
+        if (!changes.empty()) return changes_text(changes);
+    } catch (const Error&) {
+        // Its scene cannot be read, or is left out.
+    }
+    return "it is of another frame, or of another file with this scene";
+}
 
 bool is_opaque(const Scene& scene) {
     return view::theme_colors(scene.style).ground.is_opaque();
@@ -211,7 +226,9 @@ CheckedOutput check_render(const Scene& scene, const std::string& path, const Re
                                                           input, !is_opaque(scene));
     check_ground(scene, video.format);
     media::check_threads(*video.format.codec);
-    video.to_draw = media::frames_to_draw(video, picture_info_of(scene));
+    video.to_draw = media::frames_to_draw(video, picture_info_of(scene), [&](const PngInfo& found) {
+        return difference_text(scene, provenance_in(found));
+    });
     return CheckedOutput(std::move(video));
 }
 

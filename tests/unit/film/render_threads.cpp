@@ -168,13 +168,13 @@ TEST_F(RenderThreads, RefusePicturesOfAnotherSceneUnlessForced) {
     Film other(scene_of({"rope[0].hang.angle_deg=51"}));
     const test::Failure failure = test::failure_of([&] { render_video(other, file("%d.png"), def); });
     EXPECT_EQ(failure.code, ExitCode::kUsage);
-    EXPECT_THAT(failure.message, testing::HasSubstr("0.png' is not of this scene, these settings"));
+    EXPECT_THAT(failure.message, testing::HasSubstr("0.png' is another picture: "));
     EXPECT_TRUE(test::read_file(file("1.png")) == picture);
     // The right picture under another number.
     std::filesystem::copy_file(file("1.png"), file("2.png"),
                                std::filesystem::copy_options::overwrite_existing);
     EXPECT_THAT(test::failure_of([&] { render_video(film, file("%d.png"), def); }).message,
-                testing::HasSubstr("2.png' is not of this scene"));
+                testing::HasSubstr("2.png' is another picture: "));
     def.force = true;
     EXPECT_EQ(render_video(film, file("%d.png"), def).kept_frames, 2);
     EXPECT_EQ(render_video(other, file("%d.png"), def).kept_frames, 0);

@@ -407,9 +407,7 @@ TEST(SceneMessages, OfASweepAreOne) {
         error_of("schema = 1\nscene = \"small.toml\"\nsamples = 12\n[vary]\n\"rope[0].mass\" = [1, 2]\n")
             .message,
         "swing.toml:1:1: this is a sweep file, not a scene; make its samples with: python3 -m corda sweep "
-        "FILE "
-        "-o "
-        "FOLDER; or give the scene that it names");
+        "FILE -o FOLDER; or give the scene that it names");
 }
 
 TEST(SceneMessages, OfSettingsNameWhatIsMeant) {

@@ -182,7 +182,8 @@ void check_pictures(const CheckedVideo& video, const std::string& input) {
 }
 
 /// Whether there is a whole picture under a name, as `expected` tells. Throws as frames_to_draw().
-bool has_picture(const std::string& path, const PngInfo& expected, bool force) {
+bool has_picture(const std::string& path, const PngInfo& expected, bool force,
+                 const std::function<std::string(const PngInfo&)>& difference_of) {
     if (!is_there(path)) return false;
     PngInfo found;
     try {
@@ -193,10 +194,8 @@ bool has_picture(const std::string& path, const PngInfo& expected, bool force) {
     }
     if (found.text == expected.text) return true;
     if (force) return false;
-    throw_usage(
-        "'{}' is not of this scene, these settings and this version of Corda; write to another folder, or "
-        "draw such pictures again (--force)",
-        path);
+    throw_usage("'{}' is another picture: {}; write to another folder, or draw such pictures again (--force)",
+                path, difference_of(found));
 }
 
 }  // namespace
@@ -218,11 +217,13 @@ CheckedVideo check_video_output(CheckedVideo video, const std::string& input, bo
     return video;
 }
 
-std::vector<std::int64_t> frames_to_draw(const CheckedVideo& video, const PictureInfo& info) {
+std::vector<std::int64_t> frames_to_draw(const CheckedVideo& video, const PictureInfo& info,
+                                         const std::function<std::string(const PngInfo&)>& difference_of) {
     std::vector<std::int64_t> frames;
     for (std::int64_t k = video.first; k < video.end; ++k) {
         check_cancelled();
-        const bool is_kept = video.resume && has_picture(picture_name(video.path, k), info(k), video.force);
+        const bool is_kept =
+            video.resume && has_picture(picture_name(video.path, k), info(k), video.force, difference_of);
         if (!is_kept) frames.push_back(k);
     }
     return frames;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,8 +41,10 @@ struct CheckedVideo {
 
 /// The frames that are to be drawn, in order: of pictures that are continued, those that are missing or
 /// damaged. Throws corda::Error: kUsage, without `force`, for a picture that is not as `info` tells, because
-/// it is of another scene or another version of Corda; kIo.
-[[nodiscard]] std::vector<std::int64_t> frames_to_draw(const CheckedVideo& video, const PictureInfo& info);
+/// it is of another scene or another version of Corda, which `difference_of` its texts says in words; kIo.
+[[nodiscard]] std::vector<std::int64_t> frames_to_draw(
+    const CheckedVideo& video, const PictureInfo& info,
+    const std::function<std::string(const PngInfo&)>& difference_of);
 
 /// Metadata of a video file.
 struct VideoMetadata {
