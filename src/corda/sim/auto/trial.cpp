@@ -87,13 +87,13 @@ class Between {
     /// Notes a comparison: its time, and the steps that the run had taken by then.
     void add(double time_s, std::uint64_t steps) {
         constexpr double kGolden = 0.6180339887498949;
-        constexpr double kAtFirst = 0.25;  // steps from one to the next
-        constexpr double kUntilTwice = 32.0;
+        constexpr double kAtFirst = 0.125;  // steps from one to the next
+        constexpr double kUntilSparser = 256.0;
         constexpr double kCounted = 3.0;  // steps from which their length follows
         time_s_ = time_s;
         turns_ += kGolden;
         turns_ -= std::floor(turns_);
-        const double every_s = kAtFirst * (1.0 + points_ / kUntilTwice) * (time_s - counted_s_);
+        const double every_s = kAtFirst * std::max(1.0, points_ / kUntilSparser) * (time_s - counted_s_);
         const auto taken = static_cast<double>(steps - counted_);
         if (taken < kCounted) {
             gap_s_ = std::max(gap_s_, every_s / (taken + 1.0));
