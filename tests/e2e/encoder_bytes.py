@@ -29,6 +29,7 @@ OF_X264 = ["ultrafast", "veryfast", "medium"]
 # Ending, codec and more options; presets; sizes. Odd sizes are padded where 4:2:0 needs it.
 SIZES = ["16x16", "33x17", "64x64", "96x54"]
 OF_64 = ["64x64", "65x91", "96x96"]  # which have no smaller ones
+NO_VALGRIND = "libsvtav1"  # its functions are too long for valgrind 3.19
 FORMATS = [
     (".mp4 --codec libx264", OF_X264, SIZES),
     (".mp4 --codec libx264 --pix 444", OF_X264, SIZES),
@@ -93,7 +94,7 @@ def main():
             made = {hashlib.sha256(render(corda, folder, ending, options, MALLOC_PERTURB_=fill)).hexdigest() for fill in FILLINGS}
             videos += 1
             faults = [] if len(made) == 1 else [f"{len(made)} different files"]
-            if has_valgrind:
+            if has_valgrind and NO_VALGRIND not in options:
                 faults += sorted(set(faults_under_valgrind(corda, folder, ending, options, made)))
             for fault in faults:
                 print(f"{ending} {' '.join(options)}: {fault}")
