@@ -25,6 +25,16 @@ TEST(PlotAxis, EndsAtRoundValues) {
     EXPECT_DOUBLE_EQ(axis.px(0.5), 70.0);
 }
 
+TEST(PlotAxis, IsNotStretchedByRounding) {
+    PlotAxis axis{.low = -40.0001, .high = 40.0, .low_px = 0, .high_px = 140};
+    axis.extend_to_labels(5);
+    EXPECT_EQ(axis.low, -40.0);
+    EXPECT_EQ(axis.high, 40.0);
+    PlotAxis more{.low = -40.5, .high = 40.0, .low_px = 0, .high_px = 140};
+    more.extend_to_labels(5);
+    EXPECT_EQ(more.low, -60.0);
+}
+
 TEST(PlotAxis, HasPowersOfTenIfItIsLogarithmic) {
     PlotAxis axis{
         .low = std::log10(3e-7), .high = std::log10(0.2), .low_px = 0, .high_px = 70, .is_log = true};
