@@ -15,9 +15,9 @@ namespace corda::sim {
 /// The time of an event that there is none of.
 inline constexpr double kNoEvent = std::numeric_limits<double>::infinity();
 
-/// Each names another pinned particle, and a time from 0 s on.
+/// Each lets go of another pinned particle, at a time from 0 s on.
 [[nodiscard]] bool are_valid(std::span<const ReleaseDef> releases, std::span<const std::uint32_t> pinned);
-/// Each names another one of so many links, and a time from 0 s on.
+/// Each cuts another link, below `links`, at a time from 0 s on.
 [[nodiscard]] bool are_valid(std::span<const CutDef> cuts, std::size_t links);
 
 /// Writes when the bars of the last body go to System::cut_s. An imaginary bar of a rope goes with the first

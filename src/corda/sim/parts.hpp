@@ -16,7 +16,7 @@ struct PartOfBody {
     bool is_loose = false;                 ///< no bar joins a free particle
 };
 
-/// What bars hold together, as parts; a path of links has its particles in the order of the path. All loose
+/// The parts that bars hold together; a path of links has its particles in the order of the path. All loose
 /// particles are the last part.
 [[nodiscard]] std::vector<PartOfBody> connected_parts(const System& body);
 

@@ -44,7 +44,7 @@ class ElasticForces {
     /// 0.2 radians.
     [[nodiscard]] double common_square_frequency() const;
 
-    /// Of those that are not gone by `time_s`.
+    /// The energy of the bars and bends that are there at `time_s`.
     [[nodiscard]] double energy_j(const double* x_m, const double* y_m, double time_s = 0.0) const;
 
     /// Writes the tensions of the bars that stretch, in N, to an array of all bars of the system.

@@ -38,7 +38,7 @@ class StringPart final : public Exact {
     /// Number of times at which links went slack or snapped.
     [[nodiscard]] std::uint64_t events() const { return events_; }
 
-    /// Of what it has lengthened by `longer_m`.
+    /// The rest lengths of its links, with what `longer_m` has added.
     void read_rest_lengths(std::vector<Bar>& bars) const override;
 
     /// Also the error from which a link that nearly reached its rest length may have snapped.
