@@ -198,7 +198,8 @@ TEST_F(Output, SimulateWritesTheTensionsThatAMethodKnowsAndWarnsOfTheRest) {
     const auto result = run_corda({"simulate", mixed, "-o", "-", "--tension", "--decimal", "comma"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_THAT(result.err, HasSubstr("--tension: the tensions of rope 0 are left empty: method relaxation"));
-    EXPECT_THAT(result.out, testing::StartsWith("t;x0;y0;x1;y1;x2;y2;x3;y3;tension0_n;tension1_n\n"
+    EXPECT_THAT(result.out, testing::StartsWith("\xEF\xBB\xBF"
+                                                "t;x0;y0;x1;y1;x2;y2;x3;y3;tension0_n;tension1_n\n"
                                                 "0;0;0;0;-1;0;0;0;-1;;9,81"));
 }
 
