@@ -252,7 +252,8 @@ class ValueChecker {
     }
 
     bool fail_type(const toml::node& node, const std::string& path, std::string_view expected) const {
-        if (const std::string number = number_instead(node); !number.empty()) {
+        const bool is_one = expected == "a number" || expected == "an integer";
+        if (const std::string number = number_instead(node); is_one && !number.empty()) {
             const bool has_comma = node.is_string() && node.as_string()->get().find(',') != std::string::npos;
             return fail(node, path,
                         fmt::format("{}, not {}{}", described(node), expected,

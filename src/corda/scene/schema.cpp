@@ -198,7 +198,9 @@ std::string remedy(const Key& key) {
             return key.section.empty() ? fmt::format("write [{}]", key.name)
                                        : fmt::format("give {}", key.meaning);
         case Kind::kTables:
-            return fmt::format("give one or more [[{}]]", path_of(key));
+            return path_of(key).find("[]") == std::string::npos
+                       ? fmt::format("give one or more [[{}]]", path_of(key))
+                       : fmt::format("give {} = [{{ ... }}], a table for each", key.name);
         case Kind::kBoolean:
             return "give true or false";
         case Kind::kColor:

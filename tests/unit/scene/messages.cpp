@@ -64,6 +64,7 @@ moves = [{ pin = 0, path = [{ t = 0, by = [0, 0] }] }, { pin = 0, path = [{ t = 
 release = [{ pin = 1, t = 1 }] | 4:20 rope[0].release[0].pin | particle 1 is not pinned; add it to pinned, or give the index of a pinned one | pin = 1 => pin = 0 ; + pinned = [1]
 release = [{ pin = 0, t = 1 }, { pin = 0, t = 2 }] | 4:40 rope[0].release[1].pin | particle 0 is let go already; remove one | , { pin = 0, t = 2 } =>
 release = [{ pin = 0, t = -1 }] | 4:27 rope[0].release[0].t | -1 is not >= 0 | t = -1 => t = 1
+release = [] | 4:11 rope[0].release | the list is empty; give release = [{ ... }], a table for each
 release = [{ pin = 0, t = inf }] | 4:27 rope[0].release[0].t | inf
 release = [{ pin = 0 }] | 4:12 rope[0].release[0].t | missing; give the time from which it is free | pin = 0 => pin = 0, t = 1
 release = [{ pin = 9, t = 1 }] | 4:20 rope[0].release[0].pin | 9 is out of range; the rope has particles
@@ -270,6 +271,7 @@ duration = 0 | 4:12 world.duration | 0 is not > 0; give the duration in s, > 0
 duration = inf | 4:12 world.duration | inf is not a finite number
 drag = -0.5 | 4:8 world.drag | -0.5 is not >= 0; give the drag in 1/s, >= 0
 wind = 3 | 4:8 world.wind | 3 is an integer, not [vx, vy]; give the velocity of the air in m/s
+wind = 3.0 | 4:8 world.wind | 3.0 is a number with a point, not [vx, vy]; give the velocity of the air in m/s
 gusts = 3 | 4:9 world.gusts | 3 is an integer, not a table; give gusts = {
 gusts = { frequency = 1 } | 4:9 world.gusts.amplitude | missing; give the amplitude in m/s
 gusts = { amplitude = [1, 0], frequency = 1e6 } | 4:43 world.gusts.frequency | 1000000 is not <= 1000; give the frequency in Hz, > 0 and <= 1000
