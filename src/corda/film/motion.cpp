@@ -86,11 +86,12 @@ std::string divergence_advice(const System& system) {
     constexpr double kUnequal = 1e6;
     double ratio = 1.0;
     for (const Body& body : system.bodies) ratio = std::max(ratio, mass_ratio(system, body));
-    return ratio < kUnequal ? "less speed or force"
-                            : fmt::format(
-                                  "less unequal masses of free particles (they differ by a factor of "
-                                  "{:.2g}), less speed or force",
-                                  ratio);
+    std::string advice;
+    if (!system.moves.empty()) advice = "pins that stay within reach of each other, a compliance, ";
+    if (ratio >= kUnequal)
+        advice +=
+            fmt::format("less unequal masses of free particles (they differ by a factor of {:.2g}), ", ratio);
+    return advice + "less speed or force";
 }
 
 double Motion::end_s() const {

@@ -87,6 +87,14 @@ std::optional<double> kinetic_after_j(const System& body, const WorldDef& world,
     }
 }
 
+/// True if pins start with a speed, and free particles at rest.
+bool has_pins_alone_that_move(const System& body) {
+    if (body.moves.empty()) return false;
+    for (std::size_t i = 0; i < body.particle_count(); ++i)
+        if (!body.is_pinned(i) && (body.vx_m_s[i] != 0.0 || body.vy_m_s[i] != 0.0)) return false;
+    return true;
+}
+
 void add_lost_velocity(const Scene& scene, const System& system, const Plan& plan,
                        std::vector<std::string>& notes) {
     const auto is_zero = [](double v) { return v == 0.0; };
@@ -97,14 +105,22 @@ void add_lost_velocity(const Scene& scene, const System& system, const Plan& pla
         const auto after_j =
             kinetic_after_j(body, scene.world, plan.bodies[i].method, scene.video.fps.interval_s());
         if (!after_j || !(before_j - *after_j > kRounding * before_j)) return;
+        double all_j = 0.0;  // seen from the scene, with the pins
+        for (std::size_t p = 0; p < body.particle_count(); ++p)
+            all_j += 0.5 * body.mass_kg[p] *
+                     dot({body.vx_m_s[p], body.vy_m_s[p]}, {body.vx_m_s[p], body.vy_m_s[p]});
+        if (!(before_j - *after_j > kRounding * kRounding * all_j)) return;
         const bool is_string = body.bodies.front().material.is_string;
+        const bool is_by_pins = has_pins_alone_that_move(body);
         notes.push_back(fmt::format(
             "{}: {:.3g} % of the kinetic energy at the start{}, {:.3g} J of {:.3g} J, is left out: "
-            "velocity along {} of fixed length, which {}; give velocities across them, or a compliance",
+            "{} {} of fixed length, which {}; {}, or a compliance",
             body_name(system, i), 100.0 * (1.0 - *after_j / before_j),
             body.moves.empty() ? "" : ", seen from its pins", before_j - *after_j, before_j,
+            is_by_pins ? "a pin starts with a speed along" : "velocity along",
             is_string ? "taut links" : "bars",
-            is_string ? "cannot lengthen" : "can neither lengthen nor shorten"));
+            is_string ? "cannot lengthen" : "can neither lengthen nor shorten",
+            is_by_pins ? "let its waves start at rest (phase_deg = 90)" : "give velocities across them"));
     });
 }
 

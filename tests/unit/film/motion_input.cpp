@@ -86,6 +86,19 @@ TEST(Notes, ReportTheEnergyThatRigidBarsRemove) {
         ElementsAre(HasSubstr("100 % of the kinetic energy")));
 }
 
+TEST(Notes, ReportPinsThatStartWithASpeed) {
+    const std::string rope =
+        "[[rope]]\nhang = { links = 3, length = 1, angle_deg = 0 }\n"
+        "moves = [{ pin = 0, waves = [{ amplitude = [0, 0.1], frequency = 1";
+    EXPECT_THAT(
+        notes_of(rope + " }] }]\n"),
+        ElementsAre(AllOf(HasSubstr("is left out: a pin starts with a speed along bars"),
+                          HasSubstr("let its waves start at rest (phase_deg = 90), or a compliance"))));
+    EXPECT_THAT(notes_of(rope + ", phase_deg = 90 }] }]\n"), IsEmpty());
+    // With the speed of the pin, nothing is lost but rounding.
+    EXPECT_THAT(notes_of(rope + " }] }]\nvelocity = [0.0, 0.628318530718]\n"), IsEmpty());
+}
+
 TEST(Notes, DoNotReportAdmissibleVelocities) {
     EXPECT_THAT(notes_of("[[rope]]\npoints = [[0, 0], [1, 0]]\nvelocity = [[0, 0], [0, 4]]\n"), IsEmpty());
     EXPECT_THAT(notes_of("[[rope]]\npoints = [[0, 0], [1, 0]]\nvelocity = [1, 1]\npinned = []\n"), IsEmpty());
