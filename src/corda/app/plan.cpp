@@ -80,6 +80,8 @@ void report_in_words(const Console& console, const Film& film, const std::vector
     const Plan& plan = film.plan();
     if (const auto estimate = error_estimate_text(film))
         console.result("error estimate: " + *estimate);
+    else if (plan.horizon_s == 0.0)
+        console.result("error estimate: none; the motion cannot be predicted from the start");
     else
         console.result("error estimate: none; method auto tries tighter runs and tells how far they differ");
     for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
