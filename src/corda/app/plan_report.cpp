@@ -132,14 +132,15 @@ void report_gl(const Console& console, const GlInfo& gl) {
 nlohmann::json film_json(const Film& film) {
     const Plan& plan = film.plan();
     const System& system = film.system();
+    const bool is_known = plan.horizon_s != 0.0;  // the estimate is not of the start alone
     nlohmann::json json = {{"schema", 1},
                            {"method", method_names(plan)},
                            {"solver", plan_text(system, plan)},
                            {"particles", system.particle_count()},
                            {"bars", system.bars.size()},
                            {"links", system.link_count()},
-                           {"error_estimate_m", or_null(plan.error_estimate_m)},
-                           {"error_estimate_px", or_null(film.error_estimate_px())},
+                           {"error_estimate_m", is_known ? or_null(plan.error_estimate_m) : nullptr},
+                           {"error_estimate_px", is_known ? or_null(film.error_estimate_px()) : nullptr},
                            {"horizon_s", or_null(plan.horizon_s)}};
     const CameraDef& camera = film.camera();
     json["camera"] = {{"center", {camera.center_m->x, camera.center_m->y}}, {"height", *camera.height_m}};

@@ -410,7 +410,6 @@ void sum_up(const System& system, Plan& plan) {
         else if (plan.error_estimate_m)
             plan.error_estimate_m = std::max(*plan.error_estimate_m, *body.error_estimate_m);
     }
-    if (plan.horizon_s == 0.0) plan.error_estimate_m = std::nullopt;
     const std::size_t particles = system.particle_count();
     plan.simulation_passes = static_cast<int>((integrated + particles - 1) / particles);
 }
