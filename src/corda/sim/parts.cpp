@@ -5,28 +5,10 @@
 #include <numeric>
 #include <utility>
 
+#include "corda/core/disjoint_sets.hpp"
+
 namespace corda::sim {
 namespace {
-
-/// Groups of particles that bars join: the smallest member names a group.
-class Groups {
-  public:
-    explicit Groups(std::size_t count) : parent_(count) {
-        std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-    }
-    [[nodiscard]] std::size_t of(std::size_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(std::size_t a, std::size_t b) {
-        a = of(a);
-        b = of(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::size_t> parent_;
-};
 
 /// If links join the particles in a path, puts both into its order, from the end of the smaller index on.
 void order_as_path(const System& body, PartOfBody& part) {
@@ -58,13 +40,12 @@ void order_as_path(const System& body, PartOfBody& part) {
 }  // namespace
 
 std::vector<PartOfBody> connected_parts(const System& body) {
-    Groups groups(body.particle_count());
+    DisjointSets groups(static_cast<std::uint32_t>(body.particle_count()));
     for (std::size_t k = 0; k < body.bars.size(); ++k)
         if (body.has_bar_at(k, body.start_s)) groups.join(body.bars[k].a, body.bars[k].b);
-    std::vector<PartOfBody> all(body.particle_count());  // by the group's name
+    std::vector<PartOfBody> all(body.particle_count());  // by the name of their group
     for (PartOfBody& part : all) part.is_loose = true;
-    for (std::size_t i = 0; i < body.particle_count(); ++i)
-        all[groups.of(i)].particles.push_back(static_cast<std::uint32_t>(i));
+    for (std::uint32_t i = 0; i < body.particle_count(); ++i) all[groups.of(i)].particles.push_back(i);
     for (std::size_t k = 0; k < body.bars.size(); ++k) {
         if (!body.has_bar_at(k, body.start_s)) continue;
         PartOfBody& part = all[groups.of(body.bars[k].a)];

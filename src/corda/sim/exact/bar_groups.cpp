@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 #include "corda/core/cancel.hpp"
+#include "corda/core/disjoint_sets.hpp"
 
 namespace corda::sim {
 namespace {
@@ -25,7 +25,7 @@ class Joiner {
         : system_(system),
           ends_(system.particle_count()),
           held_(system.particle_count()),
-          parent_(system.bars.size() + 1) {
+          groups_(ground() + 1) {
         double farthest_m = 0.0;
         for (std::uint32_t k = 0; k < system.bars.size(); ++k) {
             ends_[system.bars[k].a].push_back({system.bars[k].b, k});
@@ -36,7 +36,6 @@ class Joiner {
             farthest_m = std::max({farthest_m, std::abs(system.x_m[i]), std::abs(system.y_m[i])});
         }
         rounding_m_ = kSameSide * (farthest_m + largest_length_m(system));
-        std::iota(parent_.begin(), parent_.end(), 0U);
         do {
             is_new_ = false;
             hold();
@@ -46,7 +45,7 @@ class Joiner {
 
     void read(BarGroups& groups) {
         constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-        std::vector<std::uint32_t> number(parent_.size(), kNone);
+        std::vector<std::uint32_t> number(ground() + std::size_t{1}, kNone);
         for (std::uint32_t k = 0; k < system_.bars.size(); ++k) {
             std::uint32_t& own = number[find(k)];
             if (own == kNone && find(k) != find(ground())) own = static_cast<std::uint32_t>(groups.count++);
@@ -65,18 +64,9 @@ class Joiner {
     /// The group of bars that never turn.
     [[nodiscard]] std::uint32_t ground() const { return static_cast<std::uint32_t>(system_.bars.size()); }
 
-    [[nodiscard]] std::uint32_t find(std::uint32_t k) {
-        while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
-        return k;
-    }
+    [[nodiscard]] std::uint32_t find(std::uint32_t k) { return groups_.of(k); }
 
-    void unite(std::uint32_t k, std::uint32_t l) {
-        k = find(k);
-        l = find(l);
-        if (k == l) return;
-        parent_[std::max(k, l)] = std::min(k, l);
-        is_new_ = true;
-    }
+    void unite(std::uint32_t k, std::uint32_t l) { is_new_ = groups_.join(k, l) || is_new_; }
 
     /// Bars between held particles never turn, and such bars hold the particles to which they lead.
     void hold() {
@@ -141,7 +131,7 @@ class Joiner {
     const System& system_;
     std::vector<std::vector<End>> ends_;  ///< of the bars at each particle
     std::vector<bool> held_;
-    std::vector<std::uint32_t> parent_;
+    DisjointSets groups_;
     double rounding_m_ = 0.0;
     bool is_new_ = false;
 };
