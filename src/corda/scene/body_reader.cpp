@@ -60,6 +60,17 @@ MoveDef read_move(const TableReader& table) {
     return move;
 }
 
+/// The pinned particle that a table names; std::nullopt without one.
+std::optional<std::uint32_t> read_pin(const TableReader& table, const std::vector<std::uint32_t>& pinned,
+                                      const IndexOf& index_of) {
+    const auto pin = table.find("pin");
+    const auto index = pin ? index_of(*pin) : std::nullopt;
+    if (index && std::ranges::find(pinned, *index) == pinned.end())
+        pin->add_problem(fmt::format("particle {} is not pinned", *index),
+                         "add it to pinned, or give the index of a pinned one");
+    return index;
+}
+
 }  // namespace
 
 std::vector<MoveDef> read_moves(const TableReader& body, const std::vector<std::uint32_t>& pinned,
@@ -67,16 +78,12 @@ std::vector<MoveDef> read_moves(const TableReader& body, const std::vector<std::
     std::vector<MoveDef> moves;
     for (const TableReader& table : body.tables("moves")) {
         MoveDef move = read_move(table);
-        const auto pin = table.find("pin");
-        const auto index = pin ? index_of(*pin) : std::nullopt;
-        if (!index) continue;
-        move.pin = *index;
-        if (std::ranges::find(pinned, move.pin) == pinned.end())
-            pin->add_problem(fmt::format("particle {} is not pinned", move.pin),
-                             "add it to pinned, or give the index of a pinned one");
+        const auto pin = read_pin(table, pinned, index_of);
+        if (!pin) continue;
+        move.pin = *pin;
         if (std::ranges::find(moves, move.pin, &MoveDef::pin) != moves.end())
-            pin->add_problem(fmt::format("particle {} moves already", move.pin),
-                             "put its waves and its path into one entry");
+            table.find("pin")->add_problem(fmt::format("particle {} moves already", move.pin),
+                                           "put its waves and its path into one entry");
         moves.push_back(std::move(move));
     }
     return moves;
@@ -88,15 +95,12 @@ std::vector<ReleaseDef> read_releases(const TableReader& body, const std::vector
     for (const TableReader& table : body.tables("release")) {
         ReleaseDef release;
         read_fields(table, release);
-        const auto pin = table.find("pin");
-        const auto index = pin ? index_of(*pin) : std::nullopt;
-        if (!index) continue;
-        release.pin = *index;
-        if (std::ranges::find(pinned, release.pin) == pinned.end())
-            pin->add_problem(fmt::format("particle {} is not pinned", release.pin),
-                             "add it to pinned, or give the index of a pinned one");
+        const auto pin = read_pin(table, pinned, index_of);
+        if (!pin) continue;
+        release.pin = *pin;
         if (std::ranges::find(releases, release.pin, &ReleaseDef::pin) != releases.end())
-            pin->add_problem(fmt::format("particle {} is let go already", release.pin), "remove one");
+            table.find("pin")->add_problem(fmt::format("particle {} is let go already", release.pin),
+                                           "remove one");
         releases.push_back(release);
     }
     return releases;
