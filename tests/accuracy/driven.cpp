@@ -17,6 +17,7 @@
 #include "corda/sim/moving_pins.hpp"
 #include "corda/sim/relaxation/relaxation.hpp"
 #include "support/extended_motion.hpp"
+#include "support/nets.hpp"
 #include "support/slope.hpp"
 #include "support/solver_run.hpp"
 
@@ -87,15 +88,6 @@ std::vector<Driven> driven_ropes() {
     return all;
 }
 
-NetDef as_net(const RopeDef& rope) {
-    NetDef net;
-    net.points_m = rope.points_m;
-    net.pinned = rope.pinned;
-    net.moves = rope.moves;
-    for (std::uint32_t i = 0; i + 1 < rope.points_m.size(); ++i) net.bars.push_back({i, i + 1});
-    return net;
-}
-
 /// The largest error of the tip at these times.
 double largest_error_m(Solver& solver, const System& system, std::span<const reference::PublishedTip> tips) {
     double largest_m = 0.0;
@@ -116,7 +108,7 @@ double error_m(const Driven& driven, const System& system, const MethodDef& meth
 TEST(DrivenR12ToR16, AreExactByEveryPartOfExact) {
     for (const Driven& driven : driven_ropes()) {
         const System system = build_system({&driven.rope, 1});
-        const NetDef net = as_net(driven.rope);
+        const NetDef net = test::as_net(driven.rope);
         RopeDef string = driven.rope;
         string.material.is_string = true;
         const auto by_dop853 = [&](const auto& make) {
@@ -249,10 +241,7 @@ TEST(Wind, IsNoWeight) {
     EXPECT_DOUBLE_EQ(run.solver().energy_scale_j(), 9.81 * 5.0);
     ASSERT_TRUE(run.go(1.0));
     double expected_j = 0.0;
-    State state = run.state();
-    state.vx_m_s.assign(6, 0.0);
-    state.vy_m_s.assign(6, 0.0);
-    run.solver().velocities(state);
+    const State state = run.state_with_velocities();
     for (std::size_t i = 0; i < 6; ++i) {
         expected_j += 9.81 * state.y_m[i];
         expected_j += 0.5 * (state.vx_m_s[i] * state.vx_m_s[i] + state.vy_m_s[i] * state.vy_m_s[i]);
@@ -280,10 +269,7 @@ TEST(MovingPin, PullsWithTheForceThatAcceleratesTheBob) {
         test::SolverRun<> run(driven.rope, driven.world, method);
         const auto velocity_at = [&](double t) {
             EXPECT_TRUE(run.go(t));
-            State state = run.state();
-            state.vx_m_s.assign(2, 0.0);
-            state.vy_m_s.assign(2, 0.0);
-            run.solver().velocities(state);
+            const State state = run.state_with_velocities();
             // The pin's own velocity.
             EXPECT_NEAR(state.vx_m_s[0], -0.2 * std::numbers::pi * std::sin(std::numbers::pi * t), 1e-13);
             return Vec2{state.vx_m_s[1], state.vy_m_s[1]};
@@ -374,10 +360,7 @@ TEST(MovingPin, DrivesASmallSwingAsTheLinearOscillator) {
                       {0, {{{kAmplitude, 0.0}, drive_1_s / (2.0 * std::numbers::pi), 0.0}}, {}}),
                 world, method);
             ASSERT_TRUE(run.go(150.0));  // what was at the start has decayed to 3e-7
-            State at = run.state();
-            at.vx_m_s.assign(2, 0.0);
-            at.vy_m_s.assign(2, 0.0);
-            run.solver().velocities(at);
+            const State at = run.state_with_velocities();
             const double squares = own_1_s * own_1_s - drive_1_s * drive_1_s;
             const double expected_m = own_1_s * own_1_s * kAmplitude / length(squares, 0.2 * drive_1_s);
             const double found_m = length(at.x_m[1], at.vx_m_s[1] / drive_1_s);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "benchmark/study/reference/ropes.hpp"
+#include "support/nets.hpp"
 #include "support/slope.hpp"
 #include "support/solver_run.hpp"
 
@@ -45,11 +46,7 @@ struct Whole {
 
 State state_at(test::SolverRun<>& run, double time_s) {
     EXPECT_TRUE(run.go(time_s));
-    State state = run.state();
-    state.vx_m_s.assign(state.x_m.size(), 0.0);
-    state.vy_m_s.assign(state.x_m.size(), 0.0);
-    run.solver().velocities(state);
-    return state;
+    return run.state_with_velocities();
 }
 
 /// Errors of the centre of mass in m, and of the angular momentum in parts of 1 kg m^2 / s, of particles
@@ -76,15 +73,6 @@ RopeDef released(RopeDef rope) {
     return rope;
 }
 
-NetDef as_released_net(const RopeDef& rope) {
-    NetDef net;
-    net.points_m = rope.points_m;
-    net.pinned = rope.pinned;
-    net.releases = rope.releases;
-    for (std::uint32_t i = 0; i + 1 < rope.points_m.size(); ++i) net.bars.push_back({i, i + 1});
-    return net;
-}
-
 /// A closed rope of uneven links that hangs from two pins.
 RopeDef hung_ring() {
     RopeDef ring = reference::rope_through(
@@ -98,7 +86,7 @@ RopeDef hung_ring() {
 /// Ropes of all kinds that `exact` moves, all let go at once, by the part of it that moves them.
 std::vector<std::pair<const char*, System>> released_bodies() {
     const RopeDef rope = released(reference::straight_rope(3, 1.0, 60.0));
-    const NetDef net = as_released_net(rope);
+    const NetDef net = test::as_net(rope);
     RopeDef stretching = rope;
     stretching.material.compliance_1_n = 1e-3;
     RopeDef bent = rope;

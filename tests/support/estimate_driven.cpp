@@ -138,11 +138,7 @@ EstimateCase moving_net(Random& random) {
             net.moves.push_back(any_move(random, other));
         }
     }
-    EstimateCase made;
-    made.scene.nets = {net};
-    made.scene.world.duration_s = 0.7;
-    add_video(random, made.scene);
-    return made;
+    return one_net(random, net, 0.7);
 }
 
 }  // namespace

@@ -163,6 +163,14 @@ EstimateCase one_rope(Random& random, RopeDef rope, double duration_s) {
     return made;
 }
 
+EstimateCase one_net(Random& random, NetDef net, double duration_s) {
+    EstimateCase made;
+    made.scene.nets = {std::move(net)};
+    made.scene.world.duration_s = duration_s;
+    add_video(random, made.scene);
+    return made;
+}
+
 EstimateCase straight_rope(int links, double length_m, double angle_deg, const std::string& more) {
     EstimateCase made{parse_scene(
         "schema = 1\n" + more + "\n[[rope]]\nhang = { links = " + std::to_string(links) +

@@ -44,6 +44,8 @@ void throw_it(Random& random, RopeDef& rope);
 [[nodiscard]] double pick_log(Random& random, double least, double most);
 /// A scene of that rope with a random size of picture, rate, tolerance and drag.
 [[nodiscard]] EstimateCase one_rope(Random& random, RopeDef rope, double duration_s);
+/// The same of a net.
+[[nodiscard]] EstimateCase one_net(Random& random, NetDef net, double duration_s);
 /// Sets size (16 to 4K pixels), frame rate, tolerance and drag at random.
 void add_video(Random& random, Scene& scene);
 

@@ -236,11 +236,7 @@ EstimateCase braced(Random& random) {
     for (std::uint32_t i = 2; i + 1 < count; ++i) {
         if (pick(random, 0, 2) != 0) net.bars.push_back({0, i});
     }
-    EstimateCase made;
-    made.scene.nets = {net};
-    made.scene.world.duration_s = 1.0;
-    add_video(random, made.scene);
-    return made;
+    return one_net(random, net, 1.0);
 }
 
 NetDef grid(Random& random) {
@@ -276,30 +272,18 @@ EstimateCase parallelograms(Random& random) {
     const int pins = pick(random, 0, 2);
     if (pins == 0) net.pinned = {};
     for (std::uint32_t i = 1; pins == 2 && i < columns; ++i) net.pinned.push_back(i);
-    EstimateCase made;
-    made.scene.nets = {net};
-    made.scene.world.duration_s = 0.2;  // before a cell is in line, where the truth takes tiny steps
-    add_video(random, made.scene);
-    return made;
+    return one_net(random, net, 0.2);  // before a cell is in line, where the truth takes tiny steps
 }
 
 EstimateCase net(Random& random) {
-    EstimateCase made;
-    made.scene.nets = {grid(random)};
-    made.scene.world.duration_s = 0.5;
-    add_video(random, made.scene);
-    return made;
+    return one_net(random, grid(random), 0.5);
 }
 
 EstimateCase elastic_net(Random& random) {
-    EstimateCase made;
     NetDef net = grid(random);
     net.material.compliance_1_n = pick_log(random, 1e-4, 1e-2);
     net.material.is_string = pick(random, 0, 2) == 0;
-    made.scene.nets = {net};
-    made.scene.world.duration_s = 0.5;
-    add_video(random, made.scene);
-    return made;
+    return one_net(random, net, 0.5);
 }
 
 /// Some of: a rope, a stretching rope, a string or a ring, a bungee.

@@ -38,6 +38,17 @@ inline RopeDef stiff_ring(int particles) {
     return rope;
 }
 
+/// A rope as a net of the same particles and links.
+inline NetDef as_net(const RopeDef& rope) {
+    NetDef net;
+    net.points_m = rope.points_m;
+    net.pinned = rope.pinned;
+    net.moves = rope.moves;
+    net.releases = rope.releases;
+    for (std::uint32_t i = 0; i + 1 < rope.points_m.size(); ++i) net.bars.push_back({i, i + 1});
+    return net;
+}
+
 /// A cloth of columns x rows unit masses `spacing_m` apart that hangs from the two ends of its top row, with
 /// both diagonals in every square as imaginary bars.
 inline NetDef cloth(std::uint32_t columns, std::uint32_t rows, double spacing_m) {

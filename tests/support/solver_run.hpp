@@ -83,6 +83,14 @@ class SolverRun {
     }
     [[nodiscard]] double largest_energy_change_j() const { return largest_change_j_; }
     [[nodiscard]] const State& state() const { return state_; }
+    /// The same with velocities.
+    [[nodiscard]] State state_with_velocities() {
+        State state = state_;
+        state.vx_m_s.assign(state.x_m.size(), 0.0);
+        state.vy_m_s.assign(state.x_m.size(), 0.0);
+        solver_->velocities(state);
+        return state;
+    }
     [[nodiscard]] const System& system() const { return system_; }
     [[nodiscard]] S& solver() { return *solver_; }
     [[nodiscard]] std::optional<Loads> loads() { return loads_of(system_, state_, *solver_); }

@@ -34,11 +34,7 @@ RopeDef swinging() {
 /// With velocities.
 State full_state(test::SolverRun<>& run, double time_s) {
     EXPECT_TRUE(run.go(time_s));
-    State state = run.state();
-    state.vx_m_s.assign(state.x_m.size(), 0.0);
-    state.vy_m_s.assign(state.x_m.size(), 0.0);
-    run.solver().velocities(state);
-    return state;
+    return run.state_with_velocities();
 }
 
 double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
