@@ -123,20 +123,23 @@ golden::SuiteResult run_until_asked(golden::SuiteDef& def) {
     }
 }
 
+/// The text of a file; empty if there is none.
+std::string text_of(const std::string& path) {
+    std::error_code none;
+    return std::filesystem::is_regular_file(path, none) ? file_bytes(path) : "";
+}
+
 /// Refuses to replace a file that is no report, which has `mark` in its first lines, unless `force` is set.
 void check_report(const std::string& path, std::string_view mark, bool force) {
     constexpr std::size_t kHeadBytes = 400;
-    std::error_code none;
-    const bool is_file = std::filesystem::is_regular_file(path, none);
-    const std::string text = is_file ? file_bytes(path) : "";
+    const std::string text = text_of(path);
     const bool is_report = text.substr(0, kHeadBytes).find(mark) != std::string::npos;
     check_output(path, "", force || text.empty() || is_report);
 }
 
 /// A step summary of CI has what earlier steps and commands wrote.
 void append_markdown(const std::string& path, const std::string& text) {
-    std::error_code none;
-    const std::string before = std::filesystem::is_regular_file(path, none) ? file_bytes(path) : "";
+    const std::string before = text_of(path);
     save_file(path, before + (before.empty() ? "" : "\n") + text);
 }
 
@@ -157,8 +160,8 @@ void check_options(const GoldenOptions& options) {
     check_folder(def.new_folder);
 }
 
-/// Shows failed pictures on a page until it is closed there, and says what was written. Returns the number of
-/// those that were not accepted.
+/// Shows failed pictures on a page until it is closed there, and prints how many were written. Returns the
+/// number of those that were not accepted.
 std::size_t review(const Console& console, const GoldenOptions& options, const golden::SuiteResult& result) {
     constexpr int kWaitMs = 200;
     serve::Review review(options.def, result);

@@ -42,12 +42,17 @@ void validate_frames(const Scene& scene) {
 /// Relative differences of kinetic energy or velocity below this one come from rounded numbers in the scene.
 constexpr double kRounding = 1e-9;
 
-/// Kinetic energy of the free particles in J, seen from the pins of a body.
-double kinetic_j(const System& system, std::span<const double> vx_m_s, std::span<const double> vy_m_s) {
-    const Vec2 pins_m_s = sim::common_displacement(system).value_or(sim::TimeFunction()).derivative()(0.0);
+/// The velocity at the start that all pins of a body have.
+Vec2 velocity_of_pins_m_s(const System& body) {
+    return sim::common_displacement(body).value_or(sim::TimeFunction()).derivative()(0.0);
+}
+
+/// Kinetic energy of the free particles in J, seen from a frame of this velocity.
+double kinetic_j(const System& system, std::span<const double> vx_m_s, std::span<const double> vy_m_s,
+                 Vec2 frame_m_s) {
     double sum_j = 0.0;
     for (std::size_t i = 0; i < system.particle_count(); ++i) {
-        const Vec2 v = Vec2{vx_m_s[i], vy_m_s[i]} - pins_m_s;
+        const Vec2 v = Vec2{vx_m_s[i], vy_m_s[i]} - frame_m_s;
         if (!system.is_pinned(i)) sum_j += 0.5 * system.mass_kg[i] * dot(v, v);
     }
     return sum_j;
@@ -81,7 +86,7 @@ std::optional<double> kinetic_after_j(const System& body, const WorldDef& world,
         state.vx_m_s.resize(body.particle_count());
         state.vy_m_s.resize(body.particle_count());
         solver->velocities(state);
-        return kinetic_j(body, state.vx_m_s, state.vy_m_s);
+        return kinetic_j(body, state.vx_m_s, state.vy_m_s, velocity_of_pins_m_s(body));
     } catch (const Refusal&) {
         return std::nullopt;
     }
@@ -101,14 +106,11 @@ void add_lost_velocity(const Scene& scene, const System& system, const Plan& pla
     if (std::ranges::all_of(system.vx_m_s, is_zero) && std::ranges::all_of(system.vy_m_s, is_zero)) return;
     sim::for_each_body(system, [&](const System& body, std::size_t i) {
         if (!has_velocity_along_bars(body)) return;
-        const double before_j = kinetic_j(body, body.vx_m_s, body.vy_m_s);
+        const double before_j = kinetic_j(body, body.vx_m_s, body.vy_m_s, velocity_of_pins_m_s(body));
         const auto after_j =
             kinetic_after_j(body, scene.world, plan.bodies[i].method, scene.video.fps.interval_s());
         if (!after_j || !(before_j - *after_j > kRounding * before_j)) return;
-        double all_j = 0.0;  // seen from the scene, with the pins
-        for (std::size_t p = 0; p < body.particle_count(); ++p)
-            all_j += 0.5 * body.mass_kg[p] *
-                     dot({body.vx_m_s[p], body.vy_m_s[p]}, {body.vx_m_s[p], body.vy_m_s[p]});
+        const double all_j = kinetic_j(body, body.vx_m_s, body.vy_m_s, {});
         if (!(before_j - *after_j > kRounding * kRounding * all_j)) return;
         const bool is_string = body.bodies.front().material.is_string;
         const bool is_by_pins = has_pins_alone_that_move(body);

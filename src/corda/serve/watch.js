@@ -210,8 +210,10 @@ globalThis.onresize = () => {
 
 // ---------------------------------------------------------------- video
 
+let isRunning = false;  // a render is
+
 function showRender(render) {
-    const isRunning = render !== null && render.is_running;
+    isRunning = render !== null && render.is_running;
     byId("rendering").hidden = !isRunning;
     byId("render").textContent = isRunning ? "Stop" : "Render";
     byId("ending").disabled = isRunning;
@@ -221,7 +223,7 @@ function showRender(render) {
 }
 
 byId("render").addEventListener("click", async () => {
-    if (byId("render").textContent === "Stop") return post("stop");
+    if (isRunning) return post("stop");
     const ending = byId("ending").value;
     let response = await post("render", {ending});
     if (response.status === 409 && response.headers.get("content-type").startsWith("application/json")) {

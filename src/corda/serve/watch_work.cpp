@@ -21,7 +21,6 @@ namespace corda::serve {
 using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-/// Puts a film, and what the page says of it, in the place of the last one. The lock is held.
 std::shared_ptr<ShownFilm> put_film(WatchState& state, const Film& film, const Json& words) {
     const std::int64_t playhead = state.film ? state.film->pictures.playhead() : 0;
     VideoDef small = film.scene().video;

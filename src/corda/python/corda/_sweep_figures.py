@@ -10,10 +10,10 @@ import numpy as np
 from . import _corda, _error, _parameters, _theory
 from ._archive import csv_text, save_file
 from ._corda import Error
+from ._distributions import Distribution
 from ._motion import first_turn, spread
 from ._sample import REFUSALS
 from ._shards import rows_of
-from ._distributions import Distribution
 from ._sweep_file import is_number, section_of, short_text, value_text
 
 try:

@@ -24,6 +24,7 @@ _MAX_FILE_BYTES = 16 << 20
 _MAX_COMPONENTS = 1 << 16
 _MAX_RANGE = 1_000_000
 
+
 @dataclasses.dataclass
 class Definition:
     """A sweep file that was read and checked, with the text of its scene. Processes hand it to each other."""
@@ -103,8 +104,9 @@ def _described(value):
     if isinstance(value, int):  # hexadecimal ones may have more digits than Python prints
         return f"{value} is an integer" if -2**63 <= value < 2**63 else "this is an integer beyond 64 bits"
     if isinstance(value, float):
-        is_whole = value == math.trunc(value) if math.isfinite(value) else False
-        return f"{value:.1f} is a number with a point" if is_whole and abs(value) < 1e15 else f"{number_text(value)} is a number with a fraction"
+        if value.is_integer() and abs(value) < 1e15:
+            return f"{value:.1f} is a number with a point"
+        return f"{number_text(value)} is a number with a fraction"
     return "this is a date or a time"
 
 
