@@ -75,7 +75,7 @@ ExitCode write_scene(const Console& console, const InitOptions& options) {
                            find_example(std::filesystem::path(scene).stem().string())->text);
     for (const auto& [file_path, text] : files) check_output(file_path, {}, options.force);
     for (const auto& [file_path, text] : files) save_file(file_path, text, {.force = options.force});
-    // A name that may be an example's is told from the name of a file.
+    // A name with a folder or an ending is that of a file; another one may be a misspelt example.
     const bool is_file = options.name == "scene" || is_toml || options.name != name;
     if (named == nullptr && !is_file) {
         const std::string text =

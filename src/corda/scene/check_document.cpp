@@ -23,7 +23,7 @@ std::string other_home(std::string_view name) {
     return fmt::format("it is a key of {}", key->section.empty() ? "the top level" : key->section);
 }
 
-/// What to do in place of keys that people try and that do not exist, in any table.
+/// Advice for keys that people try and that do not exist.
 struct Wish {
     std::string_view names;  ///< words between spaces
     std::string_view instead;
@@ -263,7 +263,7 @@ class ValueChecker {
         return fail(node, path, fmt::format("{}, not {}", described(node), expected));
     }
 
-    /// The number that a value of another type is meant to be; empty if there is none.
+    /// The number that a value of another type stands for; empty if there is none.
     [[nodiscard]] std::string number_instead(const toml::node& node) const {
         if (key_->type.kind != Kind::kNumber && key_->type.kind != Kind::kInteger) return "";
         if (!key_->type.choices.empty()) return "";

@@ -120,7 +120,7 @@ void refuse_other_encodings(std::string_view text, const std::string& source_nam
             "save the file as UTF-8");
 }
 
-/// What is meant by a character that editors and web pages put in the place of one of ASCII.
+/// The ASCII character that editors and web pages replace by this one, in words; empty for other characters.
 std::string_view meant_by(char32_t code) {
     if (code == 0x2212 || (code >= 0x2010 && code <= 0x2015)) return "\"-\"";
     if (code == 0x00ab || code == 0x00bb || (code >= 0x201c && code <= 0x201f)) return "'\"'";

@@ -179,7 +179,7 @@ using IndexOf = std::function<std::optional<std::uint32_t>(const Value&)>;
 [[nodiscard]] std::vector<ReleaseDef> read_releases(const TableReader& body,
                                                     const std::vector<std::uint32_t>& pinned,
                                                     const IndexOf& index_of);
-/// The links that are cut, of so many.
+/// The links that are cut, of a body with so many `links`.
 [[nodiscard]] std::vector<CutDef> read_cuts(const TableReader& body, std::int64_t links);
 
 }  // namespace corda::scene

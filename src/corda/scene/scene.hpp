@@ -173,8 +173,8 @@ struct PlacedSettings {
 /// on from the labelled one before them, as in "8 kg 2".
 [[nodiscard]] System named_in_files(const Scene& scene, System system);
 
-/// What a scene says in pixels, times `factor`, within the ranges of the keys. Keys that have their defaults
-/// keep them; video.size and golden.size stay.
+/// Multiplies the values in pixels by `factor`, within the ranges of their keys. Keys that have their
+/// defaults keep them; video.size and golden.size stay.
 void scale_px(Scene& scene, double factor);
 
 /// The scene in pictures of another size, in which what it says in pixels keeps its share of the shorter

@@ -12,7 +12,7 @@
 
 namespace corda::serve {
 
-/// Renders a film to a file on a thread of its own, while the page goes on.
+/// Renders a film to a file on a thread of its own.
 class FilmRender : NonCopyable {
   public:
     /// `on_change` is called on that thread whenever json() changes.

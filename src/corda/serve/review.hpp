@@ -25,8 +25,8 @@ class Review {
     ///   "", "style.css", "review.js"      the page
     ///   "pictures"                        JSON: the pictures to decide on, with cause and group
     ///   "picture/I/KIND.png"              of picture I: reference, new or difference
-    ///   POST "mark" {"marks": {name: M}}  what is to become of pictures: "accept", "reject" or ""; it is kept
-    ///                                     for pages that are opened again
+    ///   POST "mark" {"marks": {name: M}}  marks pictures by "accept", "reject" or ""; a page that is opened
+    ///                                     again shows the marks
     ///   POST "apply" {"accept": [names]}  keeps these pictures as golden::accept() does
     ///   POST "end"                        ends wait()
     [[nodiscard]] Response answer(const Request& request);

@@ -47,7 +47,8 @@ struct WatchState {
     bool fits;    ///< it follows the room that the page has
     bool is_ending = false;
     bool is_reload_asked = true;
-    /// Of all below. It begins with the time, so that a page tells the next program at its address by it.
+    /// Changes with all below. It starts from the clock, so that a page notices another program at its
+    /// address.
     std::int64_t version = std::chrono::duration_cast<std::chrono::milliseconds>(
                                std::chrono::system_clock::now().time_since_epoch())
                                .count();

@@ -9,8 +9,8 @@
 
 namespace corda::sim {
 
-/// Particles that no bar moves: free ones fall, exactly but for rounding, and pins rest or move. Bars join
-/// pins alone.
+/// Particles that no bar moves: free ones fall, with no error but rounding, and pins rest or move. Bars may
+/// join pins alone.
 ///
 /// The equations of free particles are linear and the same for all: after a time t, x = x0 + drift(t) v0 +
 /// fall(t), v = decay(t) v0 + gain(t). These four are series in time.

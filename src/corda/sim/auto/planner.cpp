@@ -211,9 +211,9 @@ double gain_by_growth_s(const System& system, const Trial& trial, double ran_s, 
     return kSlower / kDigitsOfHopeless * (ran_s - trial.reached_s);
 }
 
-/// The trial to run after one that failed. Of those that are worth their price, it is the cheapest that is
-/// expected to hold; if none is, the one that is expected to reach farthest. std::nullopt: none is worth its
-/// price, and the run of the failed trial is drawn.
+/// The trial to run after one that failed: the cheapest that is worth its price and expected to hold; if none
+/// is expected to hold, the one that is worth its price and expected to reach farthest. std::nullopt: none is
+/// worth its price, and the run of the failed trial is drawn.
 ///
 /// A price is the work of the run to the end and of the checks up to the time that is expected to be reached,
 /// less that of ending the run that failed. All are in parts of a whole run of the method that failed.

@@ -181,8 +181,8 @@ void Relaxation::set_pushes() {
 
 void Relaxation::advance(std::uint64_t steps) {
     const std::size_t size = motion_.position_m.size();
-    // The first step is Euler's: its move, h v(0), is known from the start. Later phases go on with the move
-    // of the last one.
+    // The first step is Euler's: its move, h v(0), is known from the start. Later phases start with the
+    // last move of the one before.
     const bool starts_updated = step_ == 0 && !goes_on_;
     if (starts_updated) {
         for (std::size_t k = 0; k < size; ++k) {
