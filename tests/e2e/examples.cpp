@@ -86,6 +86,7 @@ TEST(Init, WritesASweepAndItsScene) {
     EXPECT_EQ(init_in(folder, "clips").exit_code, 6);
     EXPECT_EQ(nlohmann::json::parse(init_in(folder, "clips --force --json").out)["outputs"],
               nlohmann::json::parse(R"([{"path": "clips.toml"}, {"path": "clip.toml"}])"));
+    EXPECT_EQ(init_in(folder, "sweep").out, "sweep.toml\npendulum.toml\n");
 }
 
 TEST(Init, TakesANewNameAndReplacesNothing) {

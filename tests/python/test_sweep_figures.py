@@ -11,6 +11,7 @@ import pytest
 import corda
 import corda.sweep
 from corda import _sweep_figures, _sweep_file
+from corda._motion import first_turn, spread
 
 SCENE = """schema = 1
 [world]
@@ -89,6 +90,29 @@ def test_a_plot_has_theory_beside_the_measured_periods(run, tmp_path):
     assert [path.read_bytes() for path in paths] == before  # without dates
 
 
+def test_a_plot_draws_a_line_per_series_in_order_of_value(run, tmp_path, monkeypatch):
+    drawn = []
+    plot = matplotlib.axes.Axes.plot
+
+    def keep(axes, *points, **style):
+        drawn.append((style["label"], style["linestyle"], style["color"], list(points[0])))
+        return plot(axes, *points, **style)
+
+    monkeypatch.setattr(matplotlib.axes.Axes, "plot", keep)
+    grid = 'grid = true\n[vary]\n"world.gravity" = [9.81, 3.73, 10]\n"rope[0].hang.angle_deg" = [50.0, 20.0, 80.0]\n'
+    assert run(grid, "--plot", "period_s:angle_deg")[0] == 0
+    names = [f"gravity = {value}" for value in ("3.73", "9.81", "10")]
+    assert [label for label, *_ in drawn] == [label for name in names for label in (f"theory, {name}", name)]
+    assert [line for _, line, *_ in drawn] == 3 * ["--", "-"]
+    assert all(theory[2] == line[2] for theory, line in zip(drawn[::2], drawn[1::2]))
+    assert all(line[3] == [20.0, 50.0, 80.0] for line in drawn[1::2])
+    drawn.clear()
+    two = ('samples = 5\n[vary]\n"rope[0].mass" = { uniform = [1.0, 2.0] }\n"rope[0].hang.angle_deg" = { uniform = [10.0, 80.0] }\n'
+           '"world.gravity" = [9.81, 3.73]\n')
+    assert run(two, "--plot", "period_s:angle_deg", "--force")[0] == 0
+    assert {line for label, line, *_ in drawn if not label.startswith("theory")} == {"none"}  # two keys vary in a series
+
+
 def test_a_hanging_rope_has_the_theory_of_its_links(run, tmp_path):
     code, _, messages = run('grid = true\n[vary]\n"rope[0].hang.links" = [1, 5, 20]\n"rope[0].hang.angle_deg" = [2.0]\n',
                             "--plot", "period_s:links")
@@ -156,6 +180,8 @@ def test_a_contact_sheet_is_drawn_with_a_gpu_if_the_command_says_so(run, tmp_pat
         expected = error.code
     text = 'samples = 1\n[vary]\n"rope[0].mass" = [1]\n'
     assert run(text, "--require-gpu")[0] == 0  # without pictures
+    (tmp_path / "all.toml").write_text((tmp_path / "sweep.toml").read_text().replace("labels = []", ""))
+    assert corda.sweep.main([str(tmp_path / "all.toml"), "-o", str(tmp_path / "all"), "--jobs", "1", "--require-gpu"]) == 0
     assert run(text, "--sheet", "--require-gpu")[0] == expected
     assert (tmp_path / "out" / "sheet.png").exists() == (expected == 0)
 
@@ -173,5 +199,8 @@ def test_a_contact_sheet_shows_poses_and_parameters(run, tmp_path):
     assert is_drawn == [True, False, True, False, True, False]  # a negative mass is refused
     mirrored, plain = (corda.compare(cells[0][:, ::step], cells[2]).mean for step in (-1, 1))
     assert mirrored < 0.6 * plain  # measured 1.57 and 3.47: the hatches of the support are not mirrored
+    film = corda.Film(text=SCENE, size=(240, 180), settings={"rope[0].hang.angle_deg": 30.0, "overlay": {"time": False}})
+    film.save_still(tmp_path / "poses.png", spread(film.times, first_turn(film.positions[:, 1]), 6))
+    assert (corda.read_png(tmp_path / "poses.png") == cells[0]).all()  # without times at the poses
     labels = sheet[12 + 180 : row_px - 12, 12:252]
     assert (labels[..., 0] < 100).sum() > 200  # text

@@ -53,6 +53,11 @@ def test_defaults_are_all_pictures_labels_and_columns(load):
     assert sweep.encoder.startswith("libx264 ")
 
 
+def test_without_pictures_a_mask_is_drawn_only_if_it_is_named(load):
+    assert load(OUTPUT + 'pictures = "none"\n').labels == [label for label in LABELS if label != "mask"]
+    assert load(OUTPUT + 'pictures = "none"\nlabels = ["mask"]\n').labels == ["mask"]
+
+
 def test_every_key_is_read(load):
     sweep = load("""samples = 1000000000
 seed = 9223372036854775807

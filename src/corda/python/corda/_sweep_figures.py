@@ -113,9 +113,15 @@ def period_theory(sweep, parameters, angle_deg):
     return _theory.pendulum_period(omega, angle_deg)
 
 
+def _order(value):
+    """Sorts numbers by their size, before words and lists by their text."""
+    return (0, value, "") if is_number(value) else (1, 0.0, value_text(value))
+
+
 def _read_points(sweep, folder, y, x):
-    """The samples of a plot: the parameters of the first of each series by its name, a dictionary per point, the number of
-    samples that lack a figure, and whether points of a series lie on a curve."""
+    """The samples of a plot: the parameters of the first of each series by its name, in the order of the values that name it, a
+    dictionary per point, and the number of samples that lack a figure; and whether the points of a series lie on a line, and
+    those of its theory on a curve over angles."""
     keys = _series_keys(sweep, x)
     series, points, others = {}, [], 0
     for number, row in rows_of(sweep, folder):
@@ -132,15 +138,18 @@ def _read_points(sweep, folder, y, x):
     if not points:
         raise _error(f"--plot {y.name}:{x.name}: no finished sample in '{folder}' has both figures (a period needs two "
                        "passes below the only pin)")
+    others_vary = [key for key, values in sweep.vary.items()
+                   if key not in keys and not (isinstance(values, list) and len(values) == 1)]
+    is_line = len(others_vary) <= 1
     is_curve = (x.name == "angle_max_deg" or _short_name(x.name) == "angle_deg") and all(
-        key in keys or _short_name(key) == "angle_deg" or (isinstance(values, list) and len(values) == 1)
-        for key, values in sweep.vary.items())
-    return series, points, others, is_curve
+        _short_name(key) == "angle_deg" for key in others_vary)
+    series = dict(sorted(series.items(), key=lambda one: [_order(one[1][key]) for key in keys]))
+    return series, points, others, is_line, is_curve
 
 
-def _draw_points(sweep, axes, series, points, is_curve):
+def _draw_points(sweep, axes, series, points, is_line, is_curve):
     for i, (name, parameters) in enumerate(series.items()):
-        own = [point for point in points if point["series"] == name]
+        own = sorted((point for point in points if point["series"] == name), key=lambda point: point["x"])
         color = _COLORS[i % len(_COLORS)]
         known = [(point["x"], point["theory"]) for point in own if point["theory"] is not None]
         shown = _plain(name)
@@ -148,24 +157,26 @@ def _draw_points(sweep, axes, series, points, is_curve):
         if known and is_curve:
             angles = np.linspace(min(known)[0], max(known)[0], _CURVE_POINTS + 1)
             periods = [period_theory(sweep, parameters, angle) for angle in angles]
-            axes.plot(angles, periods, color=color, linewidth=0.9, label=label)
+            axes.plot(angles, periods, color=color, linewidth=0.9, linestyle="--", label=label)
         elif known:
-            axes.plot(*zip(*known), linestyle="none", marker="x", markersize=4.0, color=color, label=label)
-        axes.plot([point["x"] for point in own], [point["y"] for point in own], linestyle="none", marker="o", markersize=3.0,
-                  markerfacecolor="none", color=color, label=shown or "measured")
+            axes.plot(*zip(*known), linewidth=0.9, linestyle="--" if is_line else "none", marker="x", markersize=4.0, color=color,
+                      label=label)
+        axes.plot([point["x"] for point in own], [point["y"] for point in own], linewidth=0.9,
+                  linestyle="-" if is_line else "none", marker="o", markersize=3.0, markerfacecolor="none", color=color,
+                  label=shown or "measured")
 
 
 def write_plot(sweep, folder, columns):
     """Draws Y over X of the finished samples as SVG, PDF, PNG and CSV in the folder; returns the paths. Raises Error: code 2 if
     no sample has both, and 6."""
     y, x = find_columns(sweep, columns)
-    series, points, others, is_curve = _read_points(sweep, folder, y, x)
+    series, points, others, is_line, is_curve = _read_points(sweep, folder, y, x)
     stem = os.path.join(folder, f"{_file_name(sweep, y)}-{_file_name(sweep, x)}")
     paths = []
     with style.context(["default", _STYLE]):  # whatever the user's matplotlibrc says
         figure = Figure(figsize=(_PAGE_MM / _MM_PER_INCH, 0.6 * _PAGE_MM / _MM_PER_INCH), layout="constrained")
         axes = figure.add_subplot()
-        _draw_points(sweep, axes, series, points, is_curve)
+        _draw_points(sweep, axes, series, points, is_line, is_curve)
         axes.set_xlabel(x.title())
         axes.set_ylabel(y.title())
         axes.set_title(_plain(os.path.splitext(os.path.basename(sweep.source))[0]), loc="left", fontsize=9.0)
@@ -206,7 +217,7 @@ def _cell(sweep, number, gl):
         settings = _parameters.settings_of(parameters)
         width, height = _corda.picture_size(*scene, settings)
         size = [max(1, math.floor(_CELL_PX * side / max(width, height) + 0.5)) for side in (width, height)]
-        film = _corda.sample_film(*scene, [*settings, "overlay={}", f"video.size={size}"], *gl)
+        film = _corda.sample_film(*scene, [*settings, "overlay={time=false}", f"video.size={size}"], *gl)
         times = _first_swing(film)
         picture = _corda.poses(film, times)
     except Error as error:

@@ -375,9 +375,11 @@ class _Reader:
         self._refuse_others(("output",), output, ("pictures", "labels", "summary"))
         if self._word(("output", "pictures"), output.get("pictures", "mp4"), PICTURES):
             sweep.pictures = output.get("pictures", "mp4")
-        labels = self._words("labels", output, LABELS)
+        # A mask is a picture, and takes as long to draw.
+        default = [label for label in LABELS if label != "mask" or sweep.pictures != "none"]
+        labels = self._words("labels", output, LABELS, default)
         sweep.labels = [label for label in LABELS if label in labels]
-        sweep.summary = list(dict.fromkeys(self._words("summary", output, SUMMARY)))
+        sweep.summary = list(dict.fromkeys(self._words("summary", output, SUMMARY, SUMMARY)))
 
     def _word(self, path, value, known, name=None):
         if isinstance(value, str) and value in known:
@@ -385,8 +387,8 @@ class _Reader:
         self._fail(path, f"{_described(value)}; give {', '.join(known)}", name)
         return False
 
-    def _words(self, key, output, known):
-        given = output.get(key, list(known))
+    def _words(self, key, output, known, default):
+        given = output.get(key, list(default))
         if not isinstance(given, list):
             self._fail(("output", key), f"{_described(given)}; give a list of {', '.join(known)}")
             return []
