@@ -138,7 +138,8 @@ def test_shards_have_their_bytes(folder):
     vary = VARY.replace(', [0.5, -9.81]', ', 9.81') + '"rope[0].payload" = { normal = [1.0, 0.5], min = 0.0 }\n'
     sums, members = {}, {}
     for pictures in ("none", "png", "npz", "mp4"):
-        folder.define("samples = 2\nseed = 7", vary, f'[output]\npictures = "{pictures}"\n[split]\ntrain = 0.5\ntest = 0.5\n')
+        folder.define("samples = 2\nseed = 7", vary, f'[output]\npictures = "{pictures}"\nlabels = {json.dumps(_sweep_file.LABELS)}\n'
+                                                     "[split]\ntrain = 0.5\ntest = 0.5\n")
         sums[pictures] = folder.whole()["shard-000000.tar"]
         with tarfile.open(folder.file("whole/shard-000000.tar")) as tar:
             members[pictures] = {member.name: tar.extractfile(member).read() for member in tar}
