@@ -28,6 +28,7 @@ namespace {
 
 /// The connections that a browser opens to a program are few, and all its pages share them.
 constexpr auto kLongestWait = std::chrono::seconds(2);
+constexpr auto kStateWait = std::chrono::milliseconds(200);  // visible pages ask all the time
 constexpr int kMinSidePx = 160;
 
 /// A problem as the page shows it, which need not name the file at `path`.
@@ -69,8 +70,10 @@ void ask_for_reload(WatchState& state) {
 }
 
 Response state_after(WatchState& state, std::int64_t version) {
-    const std::lock_guard lock(state.mutex);
-    if (state.version == version) return {204, "", ""};
+    std::unique_lock lock(state.mutex);
+    if (!state.changed.wait_for(lock, kStateWait,
+                                [&] { return state.is_ending || state.version != version; }))
+        return {204, "", ""};
     Json problems = Json::array();
     for (const Problem& problem : state.problems) problems.push_back(json_of(problem, state.def.path));
     Json numbers = Json::array();
@@ -181,7 +184,8 @@ Response set_side(WatchState& state, int side_px, bool fits) {
             return;
         if (!state.film) return;
         const std::shared_ptr<ShownFilm> last = state.film;
-        put_film(state, last->film, last->words)->curves = last->curves;
+        state.film = next_film(state, last->film, last->words);
+        state.film->curves = last->curves;
     });
     return {};
 }

@@ -151,11 +151,11 @@ function takeFilm(next) {
 const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
 /// Asks for the state again and again, and not at all while nobody sees the page: pages share the few
-/// connections that a browser opens to a program.
+/// connections that a browser opens to a program. An answer comes at the next change, or soon without one.
 async function follow() {
     for (;;) {
         if (document.hidden) await new Promise((resolve) => document.addEventListener("visibilitychange", resolve, {once: true}));
-        let wait = 80;
+        let wait = 0;
         try {
             const response = await fetch(`state?after=${version}`);
             if (response.status === 200) take(await response.json());
@@ -168,7 +168,7 @@ async function follow() {
             version = 0;
             wait = 1000;
         }
-        await sleep(wait);
+        if (wait > 0) await sleep(wait);
     }
 }
 

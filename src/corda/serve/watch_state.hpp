@@ -61,8 +61,11 @@ struct WatchState {
     std::int64_t films = version;     ///< number of the last film
     std::shared_ptr<ShownFilm> film;  ///< the last good one; null before the first
     FilmRender render{[this] {
-        const std::lock_guard lock(mutex);
-        ++version;
+        {
+            const std::lock_guard lock(mutex);
+            ++version;
+        }
+        changed.notify_all();
     }};
 };
 
@@ -76,8 +79,8 @@ void update(WatchState& state, const Change& change) {
     state.changed.notify_all();
 }
 
-/// Puts a film, and what the page says of it, in the place of the last one. The lock is held.
-std::shared_ptr<ShownFilm> put_film(WatchState& state, const Film& film, const nlohmann::json& words);
+/// A film, and what the page says of it, to take the place of the last one. The lock is held.
+std::shared_ptr<ShownFilm> next_film(WatchState& state, const Film& film, const nlohmann::json& words);
 
 /// The thread of a watch: loads the scene, draws frames and reads curves until the state is ending.
 void work(WatchState& state);

@@ -21,20 +21,18 @@ namespace corda::serve {
 using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-std::shared_ptr<ShownFilm> put_film(WatchState& state, const Film& film, const Json& words) {
+std::shared_ptr<ShownFilm> next_film(WatchState& state, const Film& film, const Json& words) {
     const std::int64_t playhead = state.film ? state.film->pictures.playhead() : 0;
     VideoDef small = film.scene().video;
     small.scale_to(std::min(state.side_px, std::max(small.width_px, small.height_px)));
-    state.film =
-        std::make_shared<ShownFilm>(ShownFilm{++state.films,
-                                              film,
-                                              words,
-                                              {film.frame_count(), state.def.picture_bytes, playhead},
-                                              small.width_px,
-                                              small.height_px});
-    state.film->words.update(
-        {{"number", state.films}, {"width", small.width_px}, {"height", small.height_px}});
-    return state.film;
+    auto next = std::make_shared<ShownFilm>(ShownFilm{++state.films,
+                                                      film,
+                                                      words,
+                                                      {film.frame_count(), state.def.picture_bytes, playhead},
+                                                      small.width_px,
+                                                      small.height_px});
+    next->words.update({{"number", state.films}, {"width", small.width_px}, {"height", small.height_px}});
+    return next;
 }
 
 namespace {
@@ -80,7 +78,7 @@ void draw(WatchState& state, ShownFilm& shown, std::int64_t k) {
     update(state, [&] { shown.pictures.keep(k, std::move(picture)); });
 }
 
-/// Shows a film, and draws the frame at the playhead.
+/// Draws the frame of a film at the playhead, and shows the film.
 void show(WatchState& state, const Film& film) {
     const VideoDef& video = film.scene().video;
     const Json words = {{"name", film.scene().name},
@@ -89,10 +87,15 @@ void show(WatchState& state, const Film& film) {
                         {"frame_s", video.scene_rate().interval_s()},
                         {"full", {video.width_px, video.height_px}},
                         {"plan", plan_lines(film)}};
-    std::shared_ptr<ShownFilm> shown;
-    update(state, [&] { shown = put_film(state, film, words); });
-    draw(state, *shown, shown->pictures.playhead());  // before the page asks for it
+    std::shared_ptr<ShownFilm> next;
+    int side_px = 0;
     update(state, [&] {
+        next = next_film(state, film, words);
+        side_px = state.side_px;
+    });
+    draw(state, *next, next->pictures.playhead());
+    update(state, [&] {
+        state.film = side_px == state.side_px ? next : next_film(state, film, words);
         state.problems.clear();
         state.is_busy = false;
         ++state.version;
