@@ -127,6 +127,7 @@ function showStatus(state) {
 
 function take(state) {
     version = state.version;
+    if (state.film && (!film || film.number !== state.film.number)) takeFilm(state.film);  // first, to ask for its picture
     document.title = `${state.film ? state.film.name : state.file} - corda watch`;
     byId("name").textContent = state.file.slice(state.file.lastIndexOf("/") + 1);
     byId("name").title = state.file;
@@ -134,7 +135,6 @@ function take(state) {
     if (!state.busy) showProblems(state.problems);
     showNumbers(state);
     showRender(state.render);
-    if (state.film && (!film || film.number !== state.film.number)) takeFilm(state.film);
     showSide(state.side);
 }
 
