@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <sstream>
 #include <string>
@@ -252,6 +253,38 @@ ropes = [4]
 method = "relaxation"
 )");
     EXPECT_THAT(run_corda({"plan", scene}).out, HasSubstr("first, rope 1 to rope 2, last"));
+}
+
+TEST_F(Messages, SimulateStatesThePeriodsOfRopesThatSwingEvenly) {
+    const std::string scene = folder_.write("ropes.toml", R"(schema = 1
+[world]
+duration = 6.0
+[[rope]]
+hang = { links = 20, length = 1.0, angle_deg = 160.0 }
+[[rope]]
+hang = { links = 1, length = 1.0, angle_deg = 90.0 }
+label = "pendulum"
+[[rope]]
+points = [[0, 0], [1, 0]]
+pinned = []
+[[rope]]
+hang = { links = 1, length = 1.0, angle_deg = 90.0 }
+release = [{ pin = 0, t = 1.0 }]
+[[net]]
+grid = { columns = 2, rows = 2, spacing = 0.1 }
+)");
+    const auto ropes = nlohmann::json::parse(run_corda({"simulate", scene, "--json"}).out)["ropes"];
+    ASSERT_EQ(ropes.size(), 4U);
+    EXPECT_GT(ropes[0]["passages_s"].size(), 3U);
+    EXPECT_TRUE(ropes[0]["period_s"].is_null());
+    EXPECT_NE(ropes[0]["period_reason"], nullptr);
+    EXPECT_EQ(ropes[1]["body"], "pendulum");
+    EXPECT_NEAR(ropes[1]["period_s"].get<double>(), 2.3678419475762374, 1e-6);  // R1
+    EXPECT_TRUE(ropes[1]["period_reason"].is_null());
+    EXPECT_NEAR(ropes[1]["passages_s"].at(0).get<double>(), 2.3678419475762374 / 4.0, 1e-6);
+    EXPECT_EQ(ropes[2]["period_reason"], "there is no pin, or several");
+    EXPECT_EQ(ropes[3]["passages_s"].size(), 1U);
+    EXPECT_EQ(ropes[3]["period_reason"], "fewer than three passages below the pin");
 }
 
 TEST_F(Messages, SimulateWarnsOfColumnsOfNoFile) {

@@ -145,7 +145,7 @@ def test_the_page_says_what_the_figures_show(report):
     page = html.unescape((folder / "report.html").read_text())
     for sentence in ("5 particles, 4 bars (4 real); gravity of (0, -9.81) m/s2", "Method: exact at tolerance 1e-09, because the "
                      "scene asks for exact. There is no estimate of its error.", "Strobe: poses at t = 0 and 0.4 s, the fainter "
-                     "the earlier.", "The scene at t = 0.4 s.", "No period is measured: the film of 1 s", "The energy error, | E -",
+                     "the earlier.", "The scene at t = 0.4 s.", "No period is stated: fewer than three passages below the pin.", "The energy error, | E -",
                      "The links keep their lengths", "Path of the free end of rope 0 (particle 4).", "Tension of the links of rope "
                      "0 at "):
         assert sentence in page, sentence

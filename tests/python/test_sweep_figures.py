@@ -15,7 +15,7 @@ from corda._motion import first_turn, spread
 
 SCENE = """schema = 1
 [world]
-duration = 4.0
+duration = 5.0
 [[rope]]
 hang = { links = 1, length = 1.0, angle_deg = 40.0 }
 [solver]
@@ -159,7 +159,7 @@ def test_a_swing_over_the_top_has_no_theory(tmp_path, angle_deg):
 
 def test_a_plot_without_samples_is_refused(run):
     code, _, messages = run('samples = 1\n[vary]\n"world.duration" = [0.1]\n', "--plot", "period_s:duration")
-    assert code == 2 and "no finished sample in" in messages and "a period needs two passes below the only pin" in messages
+    assert code == 2 and "no finished sample in" in messages and "a period needs three passes below the only pin" in messages
 
 
 @pytest.mark.parametrize("columns, words", [

@@ -17,6 +17,7 @@
 #include "corda/film/motion.hpp"
 #include "corda/film/plan_text.hpp"
 #include "corda/film/series.hpp"
+#include "corda/film/swing.hpp"
 #include "corda/sim/support_work.hpp"
 #include "interrupt.hpp"
 
@@ -117,6 +118,53 @@ std::string columns_text(const System& system) {
     return text;
 }
 
+/// The passages of each rope's free end below its pin, until that is let go or the rope is cut.
+class RopePassages {
+  public:
+    /// The motion must outlive this.
+    explicit RopePassages(const film::Motion& motion) : system_(&motion.system) {
+        for (const film::TrackedParticle& one : film::tracked_particles(*system_, system_->bodies.size()))
+            if (one.pin && !system_->bodies[one.body].is_net) passages_.push_back({one, {}});
+    }
+
+    void include(const State& state) {
+        for (auto& [tracked, passages] : passages_) {
+            const Body& body = system_->bodies[tracked.body];
+            bool is_whole = system_->is_pinned_at(*tracked.pin, state.time_s);
+            for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k)
+                is_whole = is_whole && system_->has_bar_at(k, state.time_s);
+            const auto from_pin = [&, i = tracked.particle, pin = *tracked.pin](const auto& x,
+                                                                                const auto& y) {
+                return Vec2{x[i] - x[pin], y[i] - y[pin]};
+            };
+            if (is_whole)
+                passages.include(state.time_s, from_pin(state.x_m, state.y_m),
+                                 from_pin(state.vx_m_s, state.vy_m_s));
+        }
+    }
+
+    [[nodiscard]] nlohmann::json json(const System& named) const {
+        nlohmann::json ropes = nlohmann::json::array();
+        for (std::size_t b = 0; b < named.bodies.size(); ++b) {
+            if (named.bodies[b].is_net) continue;
+            const auto one = std::ranges::find(passages_, b, [](const auto& of) { return of.first.body; });
+            const film::Passages passages = one == passages_.end() ? film::Passages() : one->second;
+            film::Period period{{}, "there is no pin, or several"};
+            if (one != passages_.end()) period = passages.period();
+            ropes.push_back({{"body", body_name(named, b)},
+                             {"period_s", or_null(period.seconds)},
+                             {"period_reason", nullptr},
+                             {"passages_s", passages.times_s()}});
+            if (!period.seconds) ropes.back()["period_reason"] = period.reason;
+        }
+        return ropes;
+    }
+
+  private:
+    const System* system_;
+    std::vector<std::pair<film::TrackedParticle, film::Passages>> passages_;
+};
+
 /// A number that the method does not know is an empty cell. `work`: null without its column.
 void add_row(const film::Instant& instant, const Columns& columns, sim::SupportWork* work, CsvLine& line) {
     const State& state = instant.state;
@@ -140,11 +188,13 @@ void add_row(const film::Instant& instant, const Columns& columns, sim::SupportW
     if (work != nullptr) line.add(work->until_j(state.time_s));
 }
 
-nlohmann::json report(const Film& film) {
+nlohmann::json report(const Film& film, const RopePassages& passages) {
     const Figures& largest = film.diagnostics().largest;
     nlohmann::json json = film_json(film);
     json["steps"] = film.diagnostics().steps;
-    json["bodies"] = bodies_json(named_in_files(film.scene(), film.system()));
+    const System named = named_in_files(film.scene(), film.system());
+    json["bodies"] = bodies_json(named);
+    json["ropes"] = passages.json(named);
     json["wall_s"] = film.stepping_s();
     json["energy_error"] = or_null(largest.energy_error);
     json["max_strain"] = largest.strain;
@@ -164,7 +214,8 @@ std::string cost_text(const Film& film) {
 }
 
 /// Writes the states of all frame times as CSV; without a file, only simulates.
-void write_states(const Console& console, const Film& film, const SimulateOptions& options, OutputFile* csv) {
+void write_states(const Console& console, const Film& film, const SimulateOptions& options, OutputFile* csv,
+                  RopePassages* passages) {
     Progress progress(console, "simulate", film.last_frame() + 1);
     if (csv != nullptr) {
         if (options.style == CsvStyle::kComma) csv->write("\xef\xbb\xbf");  // Excel reads UTF-8 by it
@@ -180,6 +231,7 @@ void write_states(const Console& console, const Film& film, const SimulateOption
         check_cancelled();
         const double time_s = film.time_s(k);
         motion.for_each({&time_s, 1}, [&](const State& state, const Figures& figures) {
+            if (passages != nullptr) passages->include(state);
             if (csv == nullptr) return;
             add_row({source, state, figures}, options.columns, work ? &*work : nullptr, line);
             csv->write(line.end());
@@ -221,8 +273,9 @@ void check_ending(const std::string& output) {
                 output, path.extension() == ".npz" ? "; for arrays of NumPy, use corda.Film in Python" : "");
 }
 
-/// Simulates the motion and writes it, if there is an output.
-void write_output(const Console& console, const Film& film, const SimulateOptions& options) {
+/// Simulates the motion and writes it, if there is an output. `passages`: null if they are not asked for.
+void write_output(const Console& console, const Film& film, const SimulateOptions& options,
+                  RopePassages* passages) {
     std::unique_ptr<OutputFile> file;
     if (!options.output.empty()) {
         file = std::make_unique<OutputFile>(options.output, OutputOptions{.force = options.force});
@@ -233,7 +286,7 @@ void write_output(const Console& console, const Film& film, const SimulateOption
     }
     try {
         if (options.columns.tensions) warn_of_tensions(console, film);
-        write_states(console, film, options, file.get());
+        write_states(console, film, options, file.get(), passages);
     } catch (const Error& error) {
         const bool ends_early = error.code() == ExitCode::kDiverged || error.code() == interruption();
         if (!file || !ends_early) throw;
@@ -258,7 +311,7 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     const bool to_file = !options.output.empty() && !to_stdout;
     if (to_file) check_output(options.output, options.scene.path, options.force, OutputKind::kStream);
     FilmDef def;
-    def.readings = {.velocities = options.columns.velocities,
+    def.readings = {.velocities = options.columns.velocities || console.json(),
                     .tensions = options.columns.tensions,
                     .unknown_tensions = options.columns.tensions};
     for (const film::Series& one : series_of(options.columns)) def.readings = def.readings.with(one.fields);
@@ -271,12 +324,13 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     }
 
     set_interruption_message(kSomethingWritten);
-    write_output(console, film, options);
+    RopePassages passages(film.motion());
+    write_output(console, film, options, console.json() ? &passages : nullptr);
     console.info(
         fmt::format("{}; largest strain {:.3g}", cost_text(film), film.diagnostics().largest.strain));
     warn_of_branch(console, film);
     if (to_file) console.result(options.output);
-    console.report(report(film));
+    console.report(report(film, passages));
     return ExitCode::kOk;
 }
 

@@ -1,6 +1,7 @@
 // The films of the samples of a sweep, and what its file is checked against: for corda/sweep.py.
 #include <corda/film/plan_text.hpp>
 #include <corda/film/series.hpp>
+#include <corda/film/swing.hpp>
 #include <corda/media/format/format.hpp>
 #include <corda/scene/document.hpp>
 #include <corda/scene/schema.hpp>
@@ -94,6 +95,20 @@ py::dict sample_facts(const PyFilm& film) {
     return facts;
 }
 
+/// The times in s at which something passes below its pin, its period in s or None, and why it has none.
+/// `arm` and `velocity`: (times, 2), relative to the pin.
+py::tuple swing(const std::vector<double>& times_s, const py::array_t<double>& arm,
+                const py::array_t<double>& velocity) {
+    const auto arm_m = arm.unchecked<2>();
+    const auto velocity_m_s = velocity.unchecked<2>();
+    film::Passages passages;
+    for (py::ssize_t i = 0; i < std::ssize(times_s); ++i)
+        passages.include(times_s[static_cast<std::size_t>(i)], {arm_m(i, 0), arm_m(i, 1)},
+                         {velocity_m_s(i, 0), velocity_m_s(i, 1)});
+    const film::Period period = passages.period();
+    return py::make_tuple(passages.times_s(), period.seconds, period.reason);
+}
+
 /// Units of the keys of a section of scenes, by name.
 py::dict scene_keys(const std::string& section) {
     py::dict units;
@@ -159,6 +174,7 @@ void add_sweep(py::module_& module) {
     module.def("frames", &frames);
     module.def("sample_film", &sample_film);
     module.def("sample_facts", &sample_facts);
+    module.def("swing", &swing);
     module.def("labels", &labels);
     module.def("poses", &poses);
     module.def("swing_of", &swing_of);

@@ -210,9 +210,9 @@ def path_chapter(motion, film):
 def _period_text(motion):
     """ "The film has 9 periods of 2.1529 s each; that of a point pendulum of this amplitude is 2.1529 s." """
     periods = motion.swing.periods
-    if len(periods) == 0:
-        return (f"No period is measured: the film of {motion.duration:g} s has no whole one between passes below the pin.")
     whose = " of the first body" if len(motion.tracks) > 1 else ""
+    if len(periods) == 0:
+        return f"No period{whose} is stated: {motion.swing.reason}."
     text = f"The period{whose} is {periods.mean():.5g} s"
     least, most = f"{periods.min():.5g}", f"{periods.max():.5g}"
     if len(periods) > 1:

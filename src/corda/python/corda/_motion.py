@@ -59,6 +59,8 @@ class Track:
         pin = None if body.pin is None else motion.positions[:, body.pin]
         self.start = self.position[0] if pin is None else pin[0]
         self.arm = None if pin is None else self.position - pin
+        #: The velocity relative to the pin.
+        self.arm_velocity = None if pin is None else self.velocity - motion.velocities[:, body.pin]
         # `relaxation` has one velocity per step, which is not the slope of its path.
         self.is_stepped = body.method == "relaxation"
 
@@ -74,7 +76,7 @@ class Track:
         """Angle of the way from the pin in rad from straight down, positive towards +x, and its rate in rad/s: two arrays.
         Turns are counted on by the rate, since a fast rope may turn by more than half a turn between frames. Between two frames
         the rate is the geometric mean of both, that of a uniform rotation."""
-        (x, y), (vx, vy) = self.arm.T, self.velocity.T
+        (x, y), (vx, vy) = self.arm.T, self.arm_velocity.T
         with np.errstate(all="ignore"):
             rate = (x * vy - y * vx) / (x * x + y * y)
             raw = _corda.angle(x, -y)
@@ -176,18 +178,13 @@ class Swing:
     """Periods and amplitude of a Track with a pin, from its frames."""
 
     def __init__(self, track):
-        times, (x, y), (vx, _) = track.times, track.arm.T, track.velocity.T
-        step = np.diff(times)
-        at = np.flatnonzero(((x[:-1] < 0.0) != (x[1:] < 0.0)) & (y[:-1] < 0.0) & (y[1:] < 0.0))
-        value, _ = _cubic(x[at], step[at] * vx[at], x[at + 1], step[at] * vx[at + 1])
+        passes, period_s, self.reason = _corda.swing(track.times, track.arm, track.arm_velocity)
         #: Times of the passes below the pin, in s.
-        self.passes = times[at] + step[at] * _root(value, len(at))
-        directions = np.where(x[at + 1] < 0.0, -1, 1)
-        is_swing = bool(np.all(directions[1:] != directions[:-1]))
-        #: Times between passes in the same direction, in s; empty if the body goes over the top.
-        self.periods = self.passes[2:] - self.passes[:-2] if is_swing else np.zeros(0)
+        self.passes = np.array(passes)
+        #: Times between passes in the same direction, in s; empty, for a `reason`, if they do not agree.
+        self.periods = np.zeros(0) if period_s is None else self.passes[2:] - self.passes[:-2]
         #: The largest angle to a side, in degrees.
-        self.amplitude_deg = np.degrees(self._largest_angle(track, step))
+        self.amplitude_deg = np.degrees(self._largest_angle(track, np.diff(track.times)))
 
     @staticmethod
     def _largest_angle(track, step):

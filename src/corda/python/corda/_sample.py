@@ -99,7 +99,7 @@ def _summary(plan, facts, arrays):
     if facts["pin"] is not None:
         particle, pin = facts["particle"], facts["pin"]
         arm = arrays["positions"][:, particle] - arrays["positions"][:, pin]
-        period_s, angle_max_deg = _swing(arrays["times"], arm, velocities[:, particle])
+        period_s, angle_max_deg = _swing(arrays["times"], arm, velocities[:, particle] - velocities[:, pin])
     columns = {"period_s": period_s,
                "angle_max_deg": angle_max_deg,
                "tension_max_n": float(tensions.max()) if tensions.size else None,
@@ -114,7 +114,7 @@ def _summary(plan, facts, arrays):
 
 def _swing(times, arm, velocity):
     """The period in s, or None, and the largest angle from straight down in degrees of a particle that is at `arm` (frames, 2) m
-    from its pin and moves with `velocity` (frames, 2) m/s."""
+    from its pin and moves with `velocity` (frames, 2) m/s relative to it."""
     (x, y), (vx, vy) = arm.T, velocity.T
     step = np.diff(times)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -123,15 +123,7 @@ def _swing(times, arm, velocity):
     at = np.flatnonzero((rate[:-1] * rate[1:] < 0.0) & (np.abs(np.diff(angle)) < 0.5 * np.pi))
     value, slope = _cubic(angle[at], step[at] * rate[at], angle[at + 1], step[at] * rate[at + 1])
     largest = float(np.abs(np.concatenate([angle, value(_root(slope, len(at)))])).max())
-    below = y < 0.0
-    passes = np.flatnonzero(((x[:-1] < 0.0) != (x[1:] < 0.0)) & below[:-1] & below[1:])
-    rises = x[passes + 1] >= 0.0
-    period_s = None
-    if len(passes) > 1 and (rises[1:] != rises[:-1]).all():
-        at = passes[[0, -1]]
-        value, _ = _cubic(x[at], step[at] * vx[at], x[at + 1], step[at] * vx[at + 1])
-        first, last = times[at] + step[at] * _root(value, 2)
-        period_s = float(2.0 * (last - first) / (len(passes) - 1))
+    _, period_s, _ = _corda.swing(times, arm, velocity)
     return period_s, largest * (180.0 / np.pi)
 
 

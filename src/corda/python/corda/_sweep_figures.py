@@ -136,8 +136,8 @@ def _read_points(sweep, folder, y, x):
         theory = period_theory(sweep, parameters, angle_deg) if y.name == "period_s" and is_number(angle_deg) else None
         points.append({"key": _parameters.key_of(number), "series": name, "x": values[0], "y": values[1], "theory": theory})
     if not points:
-        raise _error(f"--plot {y.name}:{x.name}: no finished sample in '{folder}' has both figures (a period needs two "
-                       "passes below the only pin)")
+        raise _error(f"--plot {y.name}:{x.name}: no finished sample in '{folder}' has both figures (a period needs three "
+                       "passes below the only pin, and successive ones that agree)")
     others_vary = [key for key, values in sweep.vary.items()
                    if key not in keys and not (isinstance(values, list) and len(values) == 1)]
     is_line = len(others_vary) <= 1
