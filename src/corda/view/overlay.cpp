@@ -60,7 +60,7 @@ std::vector<PlotPanel> make_plots(const TextArea& area, const PlotLayout& layout
     const auto panel = [&](std::size_t i) {
         const PixelRect& rect = layout.panels[i];
         return PlotPanel(data.plots[i], {style, frame, rect, layout.em_px, data.body_colors, area.font,
-                                         area.words, widest_px[rect.x0]});
+                                         area.words, widest_px[rect.x0], layout.panels.size() > 1});
     };
     const std::size_t count = std::min(layout.panels.size(), data.plots.size());
     for (std::size_t i = 0; i < count; ++i) {

@@ -141,7 +141,7 @@ PlotPanel::PlotPanel(const PlotData& data, const PlotPlace& place)
         }
         curves_.push_back({curve.name, color, {}, {}, curve.points});
     }
-    place_names(place.words);
+    place_names(place.words, place.is_one_of_several);
     const bool is_drawable = can_be_divided(plot_.x.high - plot_.x.low) &&
                              (data.y.is_log || can_be_divided(plot_.y.high - plot_.y.low));
     has_room_ = !is_drawable || place_box(data.end_s > 0.0, place.least_label_px, place.font);
@@ -202,15 +202,18 @@ std::vector<std::string> PlotPanel::nameless() const {
     return names;
 }
 
-void PlotPanel::place_names(const Font& font) {
+void PlotPanel::place_names(const Font& font, bool is_one_of_several) {
     const int least_px = std::max(kMinEmPx, rounded(kSmallestName * plot_.em_px));
-    for (name_em_px_ = plot_.em_px; name_em_px_ >= least_px; --name_em_px_)
-        if (add_names(font) && room_px() >= rounded(kMinBox * plot_.em_px)) return;
+    for (const int most_rows : {1, kMaxNameRows}) {
+        if (most_rows == 1 && !is_one_of_several) continue;
+        for (name_em_px_ = plot_.em_px; name_em_px_ >= least_px; --name_em_px_)
+            if (add_names(font, most_rows) && room_px() >= rounded(kMinBox * plot_.em_px)) return;
+    }
     name_em_px_ = plot_.em_px;
-    static_cast<void>(add_names(font));
+    static_cast<void>(add_names(font, kMaxNameRows));
 }
 
-bool PlotPanel::add_names(const Font& font) {
+bool PlotPanel::add_names(const Font& font, int most_rows) {
     names_.clear();
     name_rows_ = 0;
     const int begin_px = panel_.x0 + edge_px_;
@@ -222,7 +225,7 @@ bool PlotPanel::add_names(const Font& font) {
         const int name_px = font.width_px(text, name_em_px_);
         if (x_px > begin_px && x_px + name_px > end_px) {
             x_px = begin_px;
-            if (++name_rows_ == kMaxNameRows) return false;
+            if (++name_rows_ == most_rows) return false;
         }
         names_.push_back({text, curve.color, x_px, name_rows_});
         x_px += name_px + name_em_px_;

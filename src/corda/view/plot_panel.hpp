@@ -70,6 +70,7 @@ struct PlotPlace {
     const Font& words;       ///< of the names of curves
     int least_label_px = 0;  ///< minimum width of the labels of the y axis
 };
+    bool is_one_of_several = false;
 
 /// A plot of the whole motion whose curves grow with time.
 class PlotPanel {
@@ -109,10 +110,11 @@ class PlotPanel {
 
     /// Fills in the titles and the ranges of the axes.
     void start_axes(const PlotData& data, const Font& font);
-    /// Places the names in rows, smaller ones if that shows them all.
-    void place_names(const Font& font);
-    /// Places names of size `name_em_px_`; false if there is no room for all.
-    [[nodiscard]] bool add_names(const Font& font);
+    /// Places the names in rows, smaller ones if that shows them all; those of one plot of several in one row
+    /// if the smallest fit in it.
+    void place_names(const Font& font, bool is_one_of_several);
+    /// Places names of size `name_em_px_`; false if there is no room for all in so many rows.
+    [[nodiscard]] bool add_names(const Font& font, int most_rows);
     /// Height that titles and names leave to the box.
     [[nodiscard]] int room_px() const;
     /// Height of the title and the names above the box.
