@@ -175,6 +175,13 @@ void raise_zeros(double size_m, PlotData& data) {
     }
 }
 
+/// Gives axes the ends that the scene gives.
+void set_ranges(const PlotRangesDef& ranges, LivePlot plot, PlotData& data) {
+    data.y.range = ranges.of[static_cast<std::size_t>(plot)];
+    const std::optional<Interval>& angle = ranges.of[static_cast<std::size_t>(LivePlot::kAngle)];
+    if (plot == LivePlot::kPhase && angle) data.x.range = {angle->low / kDegrees, angle->high / kDegrees};
+}
+
 /// The times at which curves are read, up to the end of the motion.
 std::vector<double> sampled_s(const Scene& scene, const Motion& motion) {
     const FrameRate fps = scene.video.scene_rate();
@@ -193,7 +200,7 @@ StateFields plot_fields(const Scene& scene) {
 }
 
 std::vector<double> plot_times_s(const Scene& scene, const System& system) {
-    if (scene.overlay.plots.empty()) return {};
+    if (scene.overlay.plots.empty() && scene.overlay.energy_zero == EnergyZero::kStart) return {};
     constexpr std::size_t kNumbersPerParticle = 4;
     const std::size_t state_bytes = kNumbersPerParticle * sizeof(double) * system.particle_count();
     const std::size_t count = std::min(kFinestSamples, kMaxBytes / state_bytes);
@@ -203,17 +210,31 @@ std::vector<double> plot_times_s(const Scene& scene, const System& system) {
     return times_s;
 }
 
+double energy_zero_j(const Scene& scene, const Motion& motion) {
+    if (scene.overlay.energy_zero == EnergyZero::kStart) return 0.0;
+    double lowest_j = HUGE_VAL;
+    motion.for_each(sampled_s(scene, motion), [&](const State& state, const Figures& /*figures*/) {
+        lowest_j = std::min(lowest_j, motion.energy_of(state).potential_j());
+    });
+    return lowest_j;
+}
+
 std::vector<PlotData> plots_of(const Scene& scene, const Motion& motion) {
     const Subject subject(scene, motion.system);
     const std::vector<LivePlot>& plots = scene.overlay.plots;
     std::vector<PlotData> all;
     for (const LivePlot plot : plots) all.push_back(kind_of(plot).axes(subject));
-    for (PlotData& data : all) data.language = subject.language;
+    for (std::size_t p = 0; p < plots.size(); ++p) {
+        all[p].language = subject.language;
+        set_ranges(scene.overlay.plot_range, plots[p], all[p]);
+    }
     const bool has_velocities = plot_fields(scene).velocities;
     const SeriesSource source(motion);
+    const double zero_j = energy_zero_j(scene, motion);
     std::vector<CurvePoint> turns;  // see turning_of(); of each body that turns
     motion.for_each(sampled_s(scene, motion), [&](const State& state, const Figures& figures) {
         Instant instant(source, state, figures);
+        instant.energy.weight_j -= zero_j;
         const bool is_first = turns.empty();
         turns.resize(subject.turning.size());
         for (std::size_t k = 0; has_velocities && k < turns.size(); ++k)

@@ -15,9 +15,13 @@ struct Motion;
 /// Fields that states must have for the live plots of a scene, and for `overlay.energy`.
 [[nodiscard]] StateFields plot_fields(const Scene& scene);
 
-/// Times between frames at which to record states, so that the curves do not depend on the frame rate. Empty
-/// without plots.
+/// Times between frames at which to record states, so that the curves and energy_zero_j() do not depend on
+/// the frame rate. Empty without them.
 [[nodiscard]] std::vector<double> plot_times_s(const Scene& scene, const System& system);
+
+/// The potential energy since the start that plots and texts show as 0: 0, or its lowest value at those times
+/// and at frame times (OverlayDef::energy_zero).
+[[nodiscard]] double energy_zero_j(const Scene& scene, const Motion& motion);
 
 /// The curves of each plot of a scene, read at those times and at frame times, whatever else is recorded.
 /// With relaxation there is no total energy: bars that it stretches store none.

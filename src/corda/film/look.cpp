@@ -265,3 +265,4 @@ double PictureScale::largest_error_px_per_metre(const MotionBounds& bounds) cons
 }
 
 }  // namespace corda::film
+    if (scene.overlay.energy) look.energy_zero_j = energy_zero_j(scene, motion);

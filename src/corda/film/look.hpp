@@ -40,6 +40,7 @@ struct Look {
     CameraDef camera;  ///< with centre and height, of one that moves those without its path
     std::optional<view::CameraTrack> track = {};  ///< of a camera that moves
     Paths paths = {};
+    double energy_zero_j = 0.0;  ///< potential energy since the start that texts show as 0
 
     /// The camera at a time, with centre and height, and its map to pixels.
     [[nodiscard]] CameraDef camera_at(double time_s) const;

@@ -94,6 +94,8 @@ Scene look_in_print(const Scene& scene, double width_mm, double letter_pt) {
     video.height_px = static_cast<int>(std::lround(shape * video.width_px));
     scale_px(look, factor);
     look.overlay.plots.clear();
+    look.overlay.plot_range = {};
+    if (!look.overlay.energy) look.overlay.energy_zero = EnergyZero::kStart;
     look.overlay.text_px = letter_pt / kPointsPerInch * kPrintPpi;
     return look;
 }

@@ -4,11 +4,23 @@
 #include <algorithm>
 
 #include "corda/core/image.hpp"
+#include "corda/scene/field.hpp"
 #include "corda/scene/readers.hpp"
 #include "corda/view/font.hpp"
 
 namespace corda::scene {
 
+namespace {
+
+void add_if_empty(std::string_view key, const std::optional<Interval>& range,
+                  std::vector<DefProblem>& problems) {
+    if (range && !(range->high > range->low))
+        problems.push_back(
+            {key, 1, fmt::format("{} is not above {}", number_text(range->high), number_text(range->low)),
+             "give the lower end first"});
+}
+
+}  // namespace
 std::vector<DefProblem> problems_of(const VideoDef& video) {
     // A speed out of its range is refused by itself.
     if (video.speed.is_rate() && !video.scene_fraction().is_rate())
@@ -59,6 +71,30 @@ std::vector<DefProblem> problems_of(const OverlayDef& overlay, const std::vector
                 "pin fewer, give ropes that move first, or remove this plot");
     }
     return problems;
+    const bool shows_energy = overlay.energy || std::ranges::count(plots, LivePlot::kEnergy) > 0;
+    if (overlay.energy_zero != EnergyZero::kStart && !shows_energy)
+        problems.push_back({"energy_zero",
+                            {},
+                            "no energy is shown",
+                            "give overlay.plots = [\"energy\"], or remove energy_zero"});
+    return problems;
+}
+
+std::vector<DefProblem> problems_of(const PlotRangesDef& ranges, const std::vector<LivePlot>& plots) {
+    std::vector<DefProblem> problems;
+    for (const Key& key : keys_of("overlay.plot_range")) {
+        const auto plot = static_cast<LivePlot>(&key - keys_of("overlay.plot_range").data());
+        const std::optional<Interval>& range = ranges.of[static_cast<std::size_t>(plot)];
+        add_if_empty(key.name, range, problems);
+        const bool is_shown = std::ranges::any_of(plots, [plot](LivePlot shown) {
+            return shown == plot || (plot == LivePlot::kAngle && shown == LivePlot::kPhase);
+        });
+        if (range && !is_shown)
+            problems.push_back({key.name,
+                                {},
+                                fmt::format("the plot {} is not shown", key.name),
+                                "add it to overlay.plots, or remove its range"});
+    }
 }
 
 std::vector<DefProblem> problems_of(const StyleDef& style, const std::vector<RopeDef>& ropes,

@@ -57,6 +57,10 @@ std::string toml_text(const Ground& value) {
     return fmt::format("[{}, {}]", toml_text(value.top), toml_text(value.bottom));
 }
 
+std::string toml_text(const Interval& value) {
+    return toml_text(Vec2{value.low, value.high});
+}
+
 std::string toml_text(const Rational& value) {
     return value.den == 1 ? toml_text(value.num) : toml_text(value.text());
 }

@@ -27,6 +27,7 @@ requires std::is_integral_v<T>
 [[nodiscard]] std::string toml_text(Vec2 value);
 [[nodiscard]] std::string toml_text(Color value);
 [[nodiscard]] std::string toml_text(const Ground& value);
+[[nodiscard]] std::string toml_text(const Interval& value);
 [[nodiscard]] std::string toml_text(const Rational& value);
 [[nodiscard]] std::string toml_text(const FrameRate& value);
 [[nodiscard]] std::string toml_text(const NetBar& value);

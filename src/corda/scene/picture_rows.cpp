@@ -98,8 +98,15 @@ std::vector<Key> style_keys() {
         {"style", "color_by", one_of({"body", "tension", "speed", "strain", "link"}), "",
          field(&StyleDef::color_by), "what colours tell",
          "tension, speed and strain of each link by one scale for the whole film; link: the list in color"},
+        {"style", "color_range", pair("[low, high]", kValue), "N or m/s",
+         otherwise("from the whole motion", field(&StyleDef::color_range)),
+         "the ends of the scale of colours",
+         "a strain is a bare number; values beyond have the colours of the ends"},
         {"style", "arrows", one_of({"none", "velocity", "tension", "weight"}), "", field(&StyleDef::arrows),
          "arrows at particles", "one scale for the whole film; a rope or net of many particles has some"},
+        {"style", "arrow_scale", number({.low = 1e-12, .high = 1e12}), "px",
+         otherwise("from the largest arrows", field(&StyleDef::arrow_scale_px)),
+         "the length of an arrow per m/s or N", "arrows longer than half of the shorter side are cut"},
         {"style", "rope_width_px", number(kWidthPx), "px",
          otherwise("shorter side / 120, at least 2", field(&StyleDef::rope_width_px)), "the width of ropes"},
         {"style", "net_width_px", number(kWidthPx), "px",
@@ -168,6 +175,12 @@ std::vector<Key> overlay_keys() {
         {"overlay", "language", one_of({"en", "de", "pt", "es", "fr"}), "", field(&OverlayDef::language),
          "the language of words and the decimal sign", "in plots and reports too"},
         {"overlay", "texts", of(Kind::kTables), "", none(),
+        {"overlay", "plot_range", of(Kind::kTable), "", none(),
+         "plot_range = { energy = [-10.0, 10.0], angle = [-90.0, 90.0] }",
+         "the ends of the value axes of plots; curves are cut there"},
+        {"overlay", "energy_zero", one_of({"start", "lowest"}), "", field(&OverlayDef::energy_zero),
+         "where the potential energy of plots and texts is 0",
+         "at the start, or where it is lowest during the motion"},
          "texts = [{ text = \"released\", at = [0.5, 0.1], from = 0.0, to = 1.5 }]",
          "texts in the picture, for a time each"},
         {"overlay", "text_px", number({.low = 4.0, .high = 400.0}), "px",
@@ -179,6 +192,28 @@ std::vector<Key> overlay_keys() {
 std::vector<Key> overlay_text_keys() {
     const std::string_view section = "overlay.texts";
     return {
+std::vector<Key> plot_range_keys() {
+    const auto row = [](LivePlot plot, const char* name, const char* unit, const char* meaning,
+                        const char* note = "") {
+        const bool is_log = plot == LivePlot::kDivergence;
+        return Key{"overlay.plot_range",
+                   name,
+                   pair("[low, high]", is_log ? Range{.low = 1e-100, .high = kValue.high} : kValue),
+                   unit,
+                   otherwise("from the whole motion", field_at<PlotRangesDef>([plot](auto& def) -> auto& {
+                                 return def.of[static_cast<std::size_t>(plot)];
+                             })),
+                   meaning,
+                   note};
+    };
+    return {
+        row(LivePlot::kEnergy, "energy", "J", "the energies"),
+        row(LivePlot::kAngle, "angle", "degrees", "the angles", "those of the plot phase too"),
+        row(LivePlot::kPhase, "phase", "rad/s", "the angular velocities"),
+        row(LivePlot::kDivergence, "divergence", "m", "the distances", "rounded outwards to powers of 10"),
+        row(LivePlot::kTip, "tip", "m", "the positions")};
+}
+
         {section, "text", of(Kind::kText), "", required(field(&OverlayTextDef::text)), "the text"},
         {section, "at", pair("[x, y]", {.low = 0.0, .high = 1.0}), "", field(&OverlayTextDef::at),
          "the place of its middle", "shares of the picture, from its upper left"},
@@ -261,8 +296,9 @@ std::vector<Key> golden_keys() {
 
 std::vector<Key> picture_rows() {
     std::vector<Key> rows;
-    for (const std::vector<Key>& part : {video_keys(), style_keys(), overlay_keys(), overlay_text_keys(),
-                                         camera_keys(), camera_path_keys(), golden_keys()})
+    for (const std::vector<Key>& part :
+         {video_keys(), style_keys(), overlay_keys(), plot_range_keys(), overlay_text_keys(), camera_keys(),
+          camera_path_keys(), golden_keys()})
         rows.insert(rows.end(), part.begin(), part.end());
     return rows;
 }

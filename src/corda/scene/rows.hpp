@@ -26,6 +26,7 @@ inline constexpr Range kCoordinate{.low = -Limits::kCoordinateMetres, .high = Li
 inline constexpr Range kDistance{.low = kMinBarMetres, .high = Limits::kCoordinateMetres};
 inline constexpr Range kLength{.low = kMinBarMetres, .high = 4 * Limits::kCoordinateMetres};
 inline constexpr Range kMass{.low = 1e-12, .high = 1e12};
+inline constexpr Range kValue{.low = -1e12, .high = 1e12};
 inline constexpr Range kWidthPx{.low = 0.1, .high = 1000.0};
 inline constexpr double kMaxParticles = Limits::kParticles;
 

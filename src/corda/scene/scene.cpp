@@ -153,6 +153,8 @@ Scene parse_scene(std::string_view toml, const std::string& source_name, const s
     read_section(sections.video, scene.video);
     read_fields(sections.style, scene.style);
     read_fields(sections.overlay, scene.overlay);
+    const TableReader plot_range = sections.overlay.table("plot_range");
+    read_fields(plot_range, scene.overlay.plot_range);
     for (const TableReader& text : sections.overlay.tables("texts"))
         read_section(text, scene.overlay.texts.emplace_back());
     for (const TableReader& key : sections.camera.tables("path"))
@@ -167,6 +169,7 @@ Scene parse_scene(std::string_view toml, const std::string& source_name, const s
     problems.throw_if_any();
     check_cancelled();
     check_section(sections.overlay, scene.overlay, scene.ropes);
+    check_section(plot_range, scene.overlay.plot_range, scene.overlay.plots);
     check_texts(sections, scene);
     check_section(sections.style, scene.style, scene.ropes, scene.nets);
     problems.throw_if_any();

@@ -50,6 +50,8 @@ class Value {
     [[nodiscard]] T as() const {
         if constexpr (std::is_same_v<T, Vec2>) {
             return {at(0).as<double>(), at(1).as<double>()};
+        } else if constexpr (std::is_same_v<T, Interval>) {
+            return {at(0).as<double>(), at(1).as<double>()};
         } else if constexpr (std::is_same_v<T, Color>) {
             return *Color::parse(as<std::string_view>());
         } else if constexpr (std::is_same_v<T, Ground>) {

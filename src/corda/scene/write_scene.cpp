@@ -188,6 +188,9 @@ std::vector<Table> plain_tables(const Scene& scene) {
                               table_of("video", "video", {part(scene.video)}, {"jobs"}),
                               table_of("style", "style", {part(scene.style)}),
                               table_of("overlay", "overlay", {part(scene.overlay)})};
+    if (Table ranges = table_of("overlay.plot_range", "overlay.plot_range", {part(scene.overlay.plot_range)});
+        !ranges.values.empty())
+        tables.push_back(std::move(ranges));
     if (scene.world.gusts != WaveDef{})
         tables.push_back(table_of("world.gusts", "world.gusts", {part(scene.world.gusts)}));
     for (std::size_t i = 0; i < scene.overlay.texts.size(); ++i)
@@ -353,6 +356,7 @@ void check_definitions(const Scene& scene) {
     for (std::size_t i = 0; i < scene.overlay.texts.size(); ++i)
         check_all(fmt::format("overlay.texts[{}]", i), scene.overlay.texts[i]);
     check_all("overlay", scene.overlay, scene.ropes);
+    check_all("overlay.plot_range", scene.overlay.plot_range, scene.overlay.plots);
     if (const auto problem = problem_of_texts(scene))
         problems.add(toml::source_region{}, "overlay.font", problem->what, problem->remedy);
     check_all("style", scene.style, scene.ropes, scene.nets);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "corda/view/colors.hpp"
+#include "corda/view/number_text.hpp"
 
 namespace corda::view {
 namespace {
@@ -22,6 +23,9 @@ constexpr double kHeadLength = 7.0;
 constexpr double kHeadWidth = 2.8;  // half of it
 constexpr double kHeadLine = 0.6;
 constexpr double kHalo = 0.8;
+
+/// Share of the shorter side that arrows of a given scale are not longer than.
+constexpr double kMost = 0.5;
 
 /// Arrows are cut above this multiple of the largest one in this share of the instants.
 constexpr double kCut = 1.5;
@@ -52,6 +56,20 @@ std::vector<std::size_t> chosen(const System& system, const Body& body, std::siz
     std::vector<std::size_t> some;
     for (std::size_t k = 0; k < free.size(); k += stride) some.push_back(free[k]);
     return some;
+}
+
+ArrowScale arrow_scale_of(const ArrowExtents& extents, const StyleDef& style, double side_px) {
+    const double fitted = extents.longest();
+    if (!(fitted > 0.0)) return {};
+    if (!style.arrow_scale_px) {
+        const double share = style.arrows == Arrows::kWeight    ? kLongestWeight
+                             : style.arrows == Arrows::kTension ? kLongestTension
+                                                                : kLongest;
+        return {side_px * share / fitted, fitted, extents.is_cut()};
+    }
+    const double most = round_number_below(kMost * side_px / *style.arrow_scale_px).value();
+    const double longest = std::min(to_four_bits(extents.largest()), most);
+    return {*style.arrow_scale_px, longest, longest < extents.largest()};
 }
 
 }  // namespace
@@ -177,13 +195,8 @@ ArrowLayer::ArrowLayer(ArrowPlaces places, const StyleDef& style, double side_px
       color_(arrow_color(style)),
       side_px_(side_px),
       extents_(extents),
-      scale_{0.0, extents.longest(), extents.is_cut()},
-      usual_(scale_.is_cut ? scale_.longest / kCut : scale_.longest) {
-    const double longest_px = side_px_ * (style.arrows == Arrows::kWeight    ? kLongestWeight
-                                          : style.arrows == Arrows::kTension ? kLongestTension
-                                                                             : kLongest);
-    if (scale_.longest > 0.0) scale_.pixels_per_unit = longest_px / scale_.longest;
-}
+      scale_(arrow_scale_of(extents, style, side_px)),
+      usual_(scale_.is_cut ? scale_.longest / kCut : scale_.longest) {}
 
 void ArrowLayer::list(std::vector<Drawn>& drawn, const ArrowExtents* extents) const {
     (extents == nullptr ? extents_ : *extents)

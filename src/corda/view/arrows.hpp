@@ -38,7 +38,8 @@ class ArrowExtents {
     /// Size of the longest arrow that is drawn to scale; 0 without arrows. It is a bound of all, or a round
     /// number if that is less: at least 1.5 times the largest arrow of 9 in 10 instants.
     [[nodiscard]] double longest() const;
-    /// True if some are larger than that.
+    [[nodiscard]] double largest() const { return largest_; }
+    /// True if some are larger than the longest.
     [[nodiscard]] bool is_cut() const { return longest() < largest_; }
     /// Adds the extents of arrows with this scale, and of their heads, to a list. Those above `longest` have
     /// its length.

@@ -77,11 +77,35 @@ constexpr double kBelowZero = 0.02;
 /// Smallest end of a scale; less is rounding.
 constexpr double kMinEnd = 1e-12;
 constexpr double kMinStrain = 1e-9;
+/// Values that are less than this share of a given scale beyond its ends are not beyond them.
+constexpr double kMinBeyond = 1e-6;
 
 /// True if the background is light.
 bool is_light(const StyleDef& style) {
     const Color text = text_color(theme_colors(style));
     return text.g < 128;
+}
+
+void set_ends(const Interval& range, const sim::Histogram& histogram, ColorScale& scale) {
+    scale.low = range.low;
+    scale.high = range.high;
+    const double beyond = kMinBeyond * (scale.high - scale.low);
+    scale.is_cut_low = histogram.least() < scale.low - beyond;
+    scale.is_cut_high = histogram.largest() > scale.high + beyond;
+}
+
+void fit_ends(const sim::Histogram& histogram, ColorScale& scale) {
+    double end = 1.0;
+    const double smallest = scale.quantity == Quantity::kStrain ? kMinStrain : kMinEnd;
+    if (!histogram.empty() && std::max(-histogram.least(), histogram.largest()) > smallest) {
+        const double largest = std::max(-histogram.least(), histogram.largest());
+        const double usual = histogram.size_exceeded_by(kRare);
+        scale.is_cut_high = usual > smallest && largest > kFarBeyond * usual;
+        end = std::min(scale.is_cut_high ? usual : largest, 1e300);
+    }
+    scale.high = rounded_end(end);
+    if (!histogram.empty() && histogram.least() < -kBelowZero * scale.high) scale.low = -scale.high;
+    scale.is_cut_low = scale.is_cut_high && scale.low < 0.0;
 }
 
 }  // namespace
@@ -125,8 +149,12 @@ Color arrow_color(const StyleDef& style) {
 
 Color ColorScale::color(double value) const {
     if (std::isnan(value)) return unknown;
-    const double place =
-        std::clamp((value - low) / (high - low), 0.0, 1.0) * static_cast<double>(colors.size() - 1);
+    return mixed_color(colors, std::clamp((value - low) / (high - low), 0.0, 1.0));
+}
+
+Color mixed_color(std::span<const Color> colors, double share) {
+    if (colors.size() == 1) return colors.front();
+    const double place = share * static_cast<double>(colors.size() - 1);
     const std::size_t i = std::min(static_cast<std::size_t>(place), colors.size() - 2);
     // In 1/32 of the way, so that neighbours in a smooth picture often share one.
     const long part = std::lround(32.0 * (place - static_cast<double>(i)));
@@ -135,24 +163,18 @@ Color ColorScale::color(double value) const {
     };
     const Color& a = colors[i];
     const Color& b = colors[i + 1];
-    return {mixed(a.r, b.r), mixed(a.g, b.g), mixed(a.b, b.b)};
+    return {mixed(a.r, b.r), mixed(a.g, b.g), mixed(a.b, b.b), mixed(a.a, b.a)};
 }
 
 ColorScale scale_of(Quantity quantity, const sim::Histogram& histogram, const StyleDef& style) {
     ColorScale scale;
     scale.quantity = quantity;
     scale.unknown = theme_colors(style).support;
-    double end = 1.0;
-    const double smallest = quantity == Quantity::kStrain ? kMinStrain : kMinEnd;
-    if (!histogram.empty() && std::max(-histogram.least(), histogram.largest()) > smallest) {
-        const double largest = std::max(-histogram.least(), histogram.largest());
-        const double usual = histogram.size_exceeded_by(kRare);
-        scale.is_cut = usual > smallest && largest > kFarBeyond * usual;
-        end = std::min(scale.is_cut ? usual : largest, 1e300);
-    }
-    scale.high = rounded_end(end);
-    const bool is_about_zero = !histogram.empty() && histogram.least() < -kBelowZero * scale.high;
-    if (is_about_zero) scale.low = -scale.high;
+    if (style.color_range)
+        set_ends(*style.color_range, histogram, scale);
+    else
+        fit_ends(histogram, scale);
+    const bool is_about_zero = scale.low == -scale.high;
     if (is_light(style))
         scale.colors = is_about_zero ? kPaperAboutZero : kPaper;
     else

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "corda/sim/recording.hpp"
@@ -32,12 +33,16 @@ struct ThemeColors {
 /// A colour of arrows that stands out from the background.
 [[nodiscard]] Color arrow_color(const StyleDef& style);
 
+/// The colour at a share, 0 .. 1, of the way through some colours at even distances; at least one.
+[[nodiscard]] Color mixed_color(std::span<const Color> colors, double share);
+
 /// Colour scale of a quantity for all pictures of a film: linear from `low` to `high`.
 struct ColorScale {
     Quantity quantity = Quantity::kTension;
     double low = 0.0;
     double high = 1.0;
-    bool is_cut = false;            ///< few values lie beyond the ends
+    bool is_cut_low = false;        ///< values lie below the end; few, unless the scale is given
+    bool is_cut_high = false;       ///< and above it
     std::array<Color, 9> colors{};  ///< between which others are mixed
     Color unknown;                  ///< for NaN
 
@@ -48,9 +53,9 @@ struct ColorScale {
 /// times a power of 10.
 [[nodiscard]] double rounded_end(double value);
 
-/// The scale of a quantity: from 0 to high, or from -high to high through grey if there are values well below
-/// 0. `high` is a round number above the largest value, or above 98 % of the values if that is less than half
-/// of the largest.
+/// The scale of a quantity: StyleDef::color_range; without it from 0 to high, or from -high to high through
+/// grey if there are values well below 0. `high` is a round number above the largest value, or above 98 % of
+/// the values if that is less than half of the largest. The colours from -high to high go through grey.
 [[nodiscard]] ColorScale scale_of(Quantity quantity, const sim::Histogram& histogram, const StyleDef& style);
 
 }  // namespace corda::view

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,14 @@ struct Ground {
     [[nodiscard]] bool is_opaque() const { return top.a == 255 && bottom.a == 255; }
 
     friend bool operator==(const Ground&, const Ground&) = default;
+};
+
+/// From `low` up to `high`, which is larger.
+struct Interval {
+    double low = 0.0;
+    double high = 0.0;
+
+    friend bool operator==(const Interval&, const Interval&) = default;
 };
 
 /// Which particles get a marker.
@@ -60,11 +69,15 @@ enum class Arrows { kNone, kVelocity, kTension, kWeight };
 struct StyleDef {
     std::optional<Theme> theme;  ///< default: kDark
     std::optional<Ground> background;
-    /// Colours of the ropes and nets in turn, except those with a colour of their own (BodyStyleDef). Empty:
-    /// the theme's.
+    /// Colours of the ropes and nets in turn, and between which the gradients of merged ones are mixed,
+    /// except those with a colour of their own (BodyStyleDef). Empty: the theme's.
     std::vector<Color> palette;
     ColorBy color_by = ColorBy::kBody;
+    /// The scale of colours, in N, m/s or as a strain, -1e12 .. 1e12; default: from the whole motion.
+    std::optional<Interval> color_range;
     Arrows arrows = Arrows::kNone;
+    /// Pixels per m/s or N, 1e-12 .. 1e12; default: from the largest arrows.
+    std::optional<double> arrow_scale_px;
     std::optional<double> rope_width_px;  ///< 0.1 .. 1000; default: side / 120, at least 2
     std::optional<double> net_width_px;   ///< 0.1 .. 1000; default: half of a rope's, at least 2
     bool payload = true;   ///< draw payloads, and the masses of ropes of up to 3 links, as balls
@@ -109,6 +122,16 @@ struct BodyStyleDef {
 enum class LivePlot { kEnergy, kAngle, kPhase, kDivergence, kTip };
 
 /// The language of words and the decimal sign in pictures and reports.
+/// Where the potential energy is 0: at the start, or where it is lowest during the motion.
+enum class EnergyZero { kStart, kLowest };
+
+/// Ranges of the value axes of live plots, in J, degrees, rad/s, m and m, -1e12 .. 1e12; default: from the
+/// whole motion. That of angles is the one of the phase plot's horizontal axis too; the ends of a
+/// logarithmic axis, > 0, are rounded to powers of 10.
+struct PlotRangesDef {
+    std::array<std::optional<Interval>, 5> of;  ///< in the order of LivePlot
+};
+
 enum class Language { kEnglish, kGerman, kPortuguese, kSpanish, kFrench };
 
 /// A text in the picture.
@@ -133,6 +156,8 @@ struct OverlayDef {
     bool method = false;          ///< the methods, and their error estimate
     std::vector<LivePlot> plots;  ///< each once; a frame without room for all shows the first ones
     Language language = Language::kEnglish;
+    PlotRangesDef plot_range;
+    EnergyZero energy_zero = EnergyZero::kStart;  ///< of energies that plots and texts show
     std::vector<OverlayTextDef> texts;  ///< not in a picture of several poses
     /// 4 .. 400: the size of the text at the edges; default: grows with the shorter side
     std::optional<double> text_px;

@@ -43,9 +43,9 @@ std::optional<ColorLegend> make_color_legend(const TextArea& area, const ColorSc
     ColorLegend legend;
     legend.scale = scale;
     legend.name = translated(title.text, area.language);
-    legend.first = (scale.is_cut && scale.low < 0.0 ? "≤ " : "") + number(scale.low);
+    legend.first = (scale.is_cut_low ? "≤ " : "") + number(scale.low);
     legend.middle = number(0.5 * (scale.low + scale.high));
-    legend.last = (scale.is_cut ? "≥ " : "") + number(scale.high);
+    legend.last = (scale.is_cut_high ? "≥ " : "") + number(scale.high);
     legend.bar_end_px = area.width_px - area.edge_px - area.font.width_px(legend.last, area.em_px) / 2;
     legend.bar_x_px = legend.bar_end_px - rounded(kBarLength * area.side_px);
     legend.x_px = legend.bar_x_px - rounded(kGap * area.em_px) - area.font.width_px(legend.name, area.em_px);

@@ -1,5 +1,6 @@
 #include "corda/view/number_text.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -129,7 +130,7 @@ std::string quantity_text(double value, const std::string& unit) {
 
 NumberTitle title_of(const ColorScale& scale) {
     const sim::QuantityKind& kind = sim::kind_of(scale.quantity);
-    return title_of(kind.name, kind.unit, scale.high);
+    return title_of(kind.name, kind.unit, std::max(std::abs(scale.low), std::abs(scale.high)));
 }
 
 }  // namespace corda::view

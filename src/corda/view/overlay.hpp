@@ -23,7 +23,7 @@ struct Caption {
     std::optional<double> energy_error;
     std::string method;
     std::vector<LabelPlace> labels = {};
-    std::optional<Energy> energy = {};  ///< shown if its error is not defined; potentials since the start
+    std::optional<Energy> energy = {};  ///< shown if its error is not defined
 };
 
 /// The data of a whole motion that an overlay shows.

@@ -60,6 +60,7 @@ void PlotAxis::extend_to_labels(int most_steps) {
         high = std::max(std::ceil(high), low + 1.0);
         return;
     }
+    if (is_given) return;
     constexpr double kSlack =
         0.01;  // less than a pixel, so that a swing from 40 degrees ends at -40, not -60
     const RoundNumber step = step_of(high - low, most_steps);

@@ -47,13 +47,15 @@ struct PlotAxis {
     int low_px = 0;
     int high_px = 0;
     bool is_log = false;
+    bool is_given = false;  ///< the ends are: they stay, except those of a logarithmic axis
     std::string title = {};
     double unit = 1.0;  ///< divisor of the labels' numbers
     std::vector<Label> labels = {};
     Language language = Language::kEnglish;  ///< of the decimal sign
 
     [[nodiscard]] double px(double value) const;
-    /// Moves the ends outwards to values that have labels, at most `most_steps` steps apart.
+    /// Moves the ends outwards to values that have labels, at most `most_steps` steps apart, if they may be
+    /// moved.
     void extend_to_labels(int most_steps);
     /// Sets the labels: round values, at most `most` steps of them.
     void set_labels(int most);

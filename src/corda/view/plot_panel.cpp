@@ -151,8 +151,10 @@ PlotPanel::PlotPanel(const PlotData& data, const PlotPlace& place)
 }
 
 void PlotPanel::start_axes(const PlotData& data, const Font& font) {
-    const auto start_axis = [&](const PlotData::AxisName& name, const ValueRange& range) {
+    const auto start_axis = [&](const PlotData::AxisName& name, ValueRange range) {
         PlotAxis axis;
+        axis.is_given = name.range.has_value();
+        if (axis.is_given) range = {name.range->low, name.range->high};
         axis.language = data.language;
         axis.is_log = name.is_log;
         axis.low = name.is_log ? log10_of(range.low) : range.low;
@@ -302,10 +304,33 @@ void PlotPanel::draw_curves(double time_s, DrawList& list) const {
         const PixelPoint dot{plot_.x.px(now.x), plot_.y.px(now.y)};
         for (std::size_t k = end - std::min(end, kMaxPoints); k < end; ++k) {
             const PixelPoint& next = k + 1 < end ? curve.points[k + 1] : dot;
-            if (!is_gap(curve.points[k]) && !is_gap(next)) list.add_capsule(curve.points[k], next, radius_px);
+            if (!is_gap(curve.points[k]) && !is_gap(next))
+                add_clipped(curve.points[k], next, radius_px, list);
         }
-        if (!is_gap(dot)) list.add_capsule(dot, dot, kDotPerCurve * radius_px);
+        if (!is_gap(dot)) add_clipped(dot, dot, kDotPerCurve * radius_px, list);
     }
+}
+
+void PlotPanel::add_clipped(PixelPoint a, PixelPoint b, double radius_px, DrawList& list) const {
+    // By Liang and Barsky, one pair of sides at a time: the part from share `from` to `to`.
+    double from = 0.0;
+    double to = 1.0;
+    const auto clip = [&](double at, double way, double low, double high) {
+        if (way == 0.0) {
+            if (at < low || at > high) to = -1.0;
+            return;
+        }
+        const auto [first, last] = std::minmax({(low - at) / way, (high - at) / way});
+        from = std::max(from, first);
+        to = std::min(to, last);
+    };
+    const PixelPoint way{b.x - a.x, b.y - a.y};
+    if (plot_.x.is_given) clip(a.x, way.x, plot_.box.x0, plot_.box.x1);
+    if (plot_.y.is_given) clip(a.y, way.y, plot_.box.y0, plot_.box.y1);
+    if (from > to) return;
+    if (to < 1.0) b = {a.x + to * way.x, a.y + to * way.y};
+    if (from > 0.0) a = {a.x + from * way.x, a.y + from * way.y};
+    list.add_capsule(a, b, radius_px);
 }
 
 void PlotPanel::draw_axes(DrawList& list, const Font& font, const Font& words) const {

@@ -36,8 +36,9 @@ struct PlotData {
         std::string text;
         std::string unit;
         double least_extent = 0.0;
-        std::string symbol = {};  ///< in place of a text that is too long
-        bool is_log = false;      ///< all values are above 0
+        std::string symbol = {};             ///< in place of a text that is too long
+        bool is_log = false;                 ///< all values are above 0
+        std::optional<Interval> range = {};  ///< the ends of the axis, if they are given
     };
 
     AxisName x;
@@ -69,8 +70,8 @@ struct PlotPlace {
     const Font& font;
     const Font& words;       ///< of the names of curves
     int least_label_px = 0;  ///< minimum width of the labels of the y axis
-};
     bool is_one_of_several = false;
+};
 
 /// A plot of the whole motion whose curves grow with time.
 class PlotPanel {
@@ -123,6 +124,8 @@ class PlotPanel {
     [[nodiscard]] bool place_box(bool is_over_time, int least_label_px, const Font& font);
     /// Fills in the points of a curve in the placed box.
     void place_points(PixelCurve& curve) const;
+    /// Adds the part of a line, or dot, that is in the box, if ends of axes are given.
+    void add_clipped(PixelPoint a, PixelPoint b, double radius_px, DrawList& list) const;
 
     int width_px_;
     int height_px_;

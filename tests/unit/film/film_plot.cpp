@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
+#include "corda/film/draw.hpp"
 #include "corda/film/film.hpp"
 #include "corda/film/live_plots.hpp"
 #include "corda/film/plan_text.hpp"
@@ -54,6 +55,71 @@ TEST(FilmPlot, ShowsTheEnergyOfAPendulum) {
         EXPECT_DOUBLE_EQ(data.curves[2].points[i].y, kinetic_j + potential_j);
     }
     EXPECT_EQ(data.curves[1].points.front().y, 0.0);
+}
+
+TEST(FilmPlot, ShowsThePotentialEnergyFromItsLowestValueOn) {
+    Film film(plotted_scene("energy", {"overlay.energy_zero=lowest"}));
+    const view::PlotData data = plot_of(film);
+    double lowest_j = HUGE_VAL;
+    for (std::size_t i = 0; i < data.curves[0].points.size(); ++i) {
+        lowest_j = std::min(lowest_j, data.curves[1].points[i].y);
+        EXPECT_NEAR(data.curves[2].points[i].y, 58.86, 1e-3);
+    }
+    EXPECT_EQ(lowest_j, 0.0);
+    EXPECT_NEAR(data.curves[1].points.front().y, 58.86, 1e-5);
+    // The same without a plot, for the text, at any frame rate.
+    for (const char* const fps : {"video.fps=3", "video.fps=30"}) {
+        const Film shown(plotted_scene("tip", {"overlay.plots=[]", "overlay.energy=true", "world.drag=0.1",
+                                               "overlay.energy_zero=lowest", fps}));
+        EXPECT_NEAR(shown.look().energy_zero_j, -58.86, 1e-3) << fps;
+    }
+}
+
+TEST(FilmPlot, HasTheRangesOfTheScene) {
+    const Film film(plotted_scene("phase", {"overlay.plots=[\"phase\", \"angle\"]",
+                                            "overlay.plot_range={ angle = [-180, 90], phase = [-4, 5] }"}));
+    const auto data = film::plots_of(film.scene(), film.motion());
+    EXPECT_EQ(data[0].x.range, (Interval{-std::numbers::pi, 0.5 * std::numbers::pi}));
+    EXPECT_EQ(data[0].y.range, (Interval{-4.0, 5.0}));
+    EXPECT_EQ(data[1].x.range, std::nullopt);
+    EXPECT_EQ(data[1].y.range, (Interval{-180.0, 90.0}));
+}
+
+/// The rows of names above each plot, from its title down, in a film of two ropes.
+TEST(FilmPlot, NamesCurvesOfSeveralPlotsInOneRow) {
+    for (const char* const language : {"en", "de", "pt", "es", "fr"}) {
+        for (const auto& [width, height] : {std::pair{1920, 1080}, {1280, 720}, {640, 360}}) {
+            const Film film(parse_scene(
+                fmt::format("schema = 1\n[world]\nduration = 0.5\n"
+                            "[[rope]]\nlabel = \"A\"\nhang = {{ links = 2, length = 1.0, angle_deg = 30 }}\n"
+                            "[[rope]]\nlabel = \"B\"\nhang = {{ links = 2, length = 1.0, angle_deg = 31 }}\n"
+                            "[overlay]\nlanguage = \"{}\"\nplots = [\"energy\", \"angle\", \"phase\", "
+                            "\"divergence\"]\n[video]\nsize = [{}, {}]\n",
+                            language, width, height),
+                "plots.toml"));
+            const auto plots = film::plots_of(film.scene(), film.motion());
+            const view::PlotLayout layout = view::lay_out_plots(plots.size(), width, height);
+            ASSERT_EQ(layout.panels.size(), 4U);
+            view::DrawList list;
+            list.width = width;
+            list.height = height;
+            film::draw(film.look(), film.motion(), 0.0, list);
+            for (std::size_t p = 0; p < plots.size(); ++p) {
+                std::vector<int> rows;
+                for (const view::Text& text : list.texts) {
+                    const bool is_name = std::ranges::any_of(
+                        plots[p].curves, [&](const auto& curve) { return curve.name == text.utf8; });
+                    const PixelRect ink = view::Font().ink(text);
+                    if (is_name && ink.intersected(layout.panels[p]) == ink) rows.push_back(text.y_px);
+                }
+                std::size_t names = 0;
+                for (const auto& curve : plots[p].curves) names += curve.name.empty() ? 0 : 1;
+                EXPECT_EQ(rows.size(), names) << language << " " << width << " " << p;
+                EXPECT_EQ(std::ranges::count(rows, rows.empty() ? 0 : rows.front()), std::ssize(rows))
+                    << language << " " << width << " " << p;
+            }
+        }
+    }
 }
 
 TEST(FilmPlot, HasNoTotalEnergyWithRelaxation) {

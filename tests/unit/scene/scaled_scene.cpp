@@ -21,7 +21,7 @@ TEST(ScaledTo, ScalesAllThatIsInPixels) {
         const Scene scene =
             parse_scene(is_net ? grid_with("") : rope_with(""), "swing.toml",
                         {fmt::format("{}.{}={}", path, key.name, is_pair ? "[36.0, 12]" : "36"),
-                         "video.size=[1200, 600]"});
+                         "style.arrows=weight", "video.size=[1200, 600]"});
         const std::string text = write_scene(scaled_to(scene, 400, 200));
         EXPECT_THAT(text, HasSubstr(fmt::format("{} = {}\n", key.name, is_pair ? "[12, 4]" : "12")))
             << path_of(key);

@@ -104,6 +104,27 @@ ArrowExtents extents_with(int snaps, double snap_m_s) {
     return extents;
 }
 
+TEST(Arrows, HaveTheScaleThatIsGivenUpToHalfOfTheShorterSide) {
+    const System system = build_system(std::vector{reference::straight_rope(1, 1.0, 0.0)});
+    const auto scale_with = [&](double pixels, const ArrowExtents& extents) {
+        StyleDef style;
+        style.arrows = Arrows::kVelocity;
+        style.arrow_scale_px = pixels;
+        return ArrowLayer({system, kGravity, Arrows::kVelocity}, style, kShorterPx, extents).scale();
+    };
+    for (const double largest : {5.0, 8.0}) {
+        const ArrowScale scale = scale_with(24.0, extents_with(26, largest));
+        EXPECT_EQ(scale.pixels_per_unit, 24.0);
+        EXPECT_EQ(scale.longest, largest);
+        EXPECT_FALSE(scale.is_cut);
+    }
+    // 240 pixels hold 5 m/s, a round number, of 40 pixels each.
+    const ArrowScale cut = scale_with(40.0, extents_with(26, 8.0));
+    EXPECT_EQ(cut.longest, 5.0);
+    EXPECT_TRUE(cut.is_cut);
+    EXPECT_EQ(scale_with(40.0, {}).pixels_per_unit, 0.0);
+}
+
 TEST(Arrows, FarLargerThanThoseOfMostInstantsAreCut) {
     EXPECT_EQ(extents_with(0, 0.0).longest(), 5.0);
     EXPECT_EQ(extents_with(5, 7.0).longest(), 7.0);

@@ -279,10 +279,44 @@ TEST(ColorScale, IsCutWhereFewValuesLieFarBeyond) {
     for (int i = 0; i < 1000; ++i) histogram.add(1.0 + 0.001 * i);
     histogram.add(500.0);
     const ColorScale cut = scale_of(Quantity::kSpeed, histogram, {});
-    EXPECT_TRUE(cut.is_cut);
+    EXPECT_TRUE(cut.is_cut_high);
+    EXPECT_FALSE(cut.is_cut_low);
     EXPECT_LE(cut.high, 3.0);
     EXPECT_EQ(cut.color(500.0), cut.color(cut.high));
-    EXPECT_FALSE(scale({1.0, 1.5}).is_cut);
+    EXPECT_FALSE(scale({1.0, 1.5}).is_cut_high);
+}
+
+TEST(ColorScale, HasTheEndsThatAreGivenWhateverTheMotion) {
+    StyleDef style;
+    style.color_range = Interval{20.0, 100.0};
+    const ColorScale within = scale_of(Quantity::kTension, histogram_of({30.0, 90.0}), style);
+    const ColorScale beyond = scale_of(Quantity::kTension, histogram_of({-5.0, 400.0}), style);
+    for (const ColorScale& one : {within, beyond}) {
+        EXPECT_TRUE(one.low == 20.0 && one.high == 100.0);
+        EXPECT_EQ(one.color(60.0), one.colors[4]);
+        EXPECT_EQ(one.color(-5.0), one.colors.front());
+        EXPECT_EQ(one.color(400.0), one.colors.back());
+    }
+    EXPECT_FALSE(within.is_cut_low || within.is_cut_high);
+    EXPECT_TRUE(beyond.is_cut_low && beyond.is_cut_high);
+    EXPECT_FALSE(scale_of(Quantity::kTension, histogram_of({20.0 - 1e-9, 50.0}), style).is_cut_low);
+    EXPECT_EQ(title_of(within).text, "tension (N)");
+    // Colours about zero are for ranges whose middle is zero.
+    EXPECT_EQ(within.colors, scale({1.0}).colors);
+    style.color_range = Interval{-20'000.0, 20'000.0};
+    const ColorScale about_zero = scale_of(Quantity::kTension, histogram_of({1.0}), style);
+    EXPECT_EQ(about_zero.colors, scale({-1.0, 1.0}).colors);
+    EXPECT_EQ(title_of(about_zero).text, "tension (kN)");
+}
+
+TEST(MixedColor, GoesThroughAllColoursAtEvenDistances) {
+    const std::vector<Color> colors{{0, 0, 0}, {100, 0, 0}, {100, 200, 0, 127}};
+    EXPECT_EQ(mixed_color(colors, 0.0), colors[0]);
+    EXPECT_EQ(mixed_color(colors, 0.25), (Color{50, 0, 0}));
+    EXPECT_EQ(mixed_color(colors, 0.5), colors[1]);
+    EXPECT_EQ(mixed_color(colors, 0.75), (Color{100, 100, 0, 191}));
+    EXPECT_EQ(mixed_color(colors, 1.0), colors[2]);
+    EXPECT_EQ(mixed_color(std::vector{colors[2]}, 0.3), colors[2]);
 }
 
 TEST(ColorScale, HasAColourForUnknownValues) {

@@ -196,7 +196,7 @@ TEST(Legends, NameTheirUnitAndTheEndsOfTheScale) {
     EXPECT_EQ(words(with_legend(kilonewtons(), {}, 960, 540)), (Words{"tension (kN)", "0", "10", "20"}));
     EXPECT_EQ(words(with_legend(kilonewtons(-5e3), {}, 960, 540)), (Words{"tension (kN)", "−20", "0", "20"}));
     ColorScale cut = kilonewtons(-5e3);
-    cut.is_cut = true;
+    cut.is_cut_low = cut.is_cut_high = true;
     EXPECT_EQ(words(with_legend(cut, {}, 960, 540)), (Words{"tension (kN)", "≤ −20", "0", "≥ 20"}));
 }
 

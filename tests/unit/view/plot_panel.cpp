@@ -160,6 +160,49 @@ TEST(PlotPanel, DrawsCurvesUpToNow) {
     }
 }
 
+TEST(PlotPanel, HasTheRangeThatIsGivenAndCutsCurvesThere) {
+    PlotData data = waves();
+    data.y.range = Interval{-0.3, 0.7};
+    const DrawList list = panel_of(data, 1280, 720);
+    std::vector<std::string> texts;
+    for (const Text& text : list.texts) texts.push_back(text.utf8);
+    for (const char* const label : {"−0.2", "0.6"})
+        EXPECT_NE(std::ranges::find(texts, label), texts.end()) << label;
+    // The horizontal lines of the grid, of which those of -0.2 and 0.6 are 0.8 of the range apart.
+    std::vector<float> grid;
+    for (std::size_t c = 0; c < list.layers[0].capsule_count; ++c)
+        if (list.capsules[c].uy == 0.0F) grid.push_back(list.capsules[c].ay);
+    const auto [top, bottom] = std::ranges::minmax(grid);
+    const float range = (bottom - top) / 0.8F;
+    std::size_t pieces = 0;
+    for (std::size_t l = 1; l < list.layers.size(); ++l) {
+        const Layer& layer = list.layers[l];
+        pieces += layer.capsule_count;
+        for (std::size_t c = 0; c < layer.capsule_count; ++c) {
+            const Capsule& piece = list.capsules[layer.first_capsule + c];
+            for (const float y : {piece.ay, piece.ay + piece.uy * piece.length}) {
+                EXPECT_GE(y, top - 0.1F * range - 1.5F);
+                EXPECT_LE(y, bottom + 0.1F * range + 1.5F);
+            }
+        }
+    }
+    EXPECT_GT(pieces, 300U);
+    EXPECT_LT(pieces, panel_of(waves(), 1280, 720).capsules.size());
+    // Nothing is left of a curve that stays beyond.
+    data.y.range = Interval{2.0, 3.0};
+    EXPECT_EQ(panel_of(data, 1280, 720).layers.back().capsule_count, 0U);
+}
+
+TEST(PlotPanel, RoundsTheRangeOfALogarithmicAxisOutwards) {
+    PlotData data{{"t", "s"}, {"distance", "m"}, 1.0, {{.points = {{0, 0, 1e-3}, {1, 1, 2e-3}}}}};
+    data.y.is_log = true;
+    data.y.range = Interval{2e-5, 0.3};
+    std::vector<std::string> texts;
+    for (const Text& text : panel_of(data, 1280, 720, 1).texts) texts.push_back(text.utf8);
+    for (const char* const label : {"10⁻⁵", "10⁰"})
+        EXPECT_NE(std::ranges::find(texts, label), texts.end()) << label;
+}
+
 TEST(PlotPanel, KeepsTheOutlineOfALongMotion) {
     PlotData data{{"t", "s"}, {"x", "m"}, 1000.0, {{""}}};
     for (int i = 0; i <= 100'000; ++i) {
