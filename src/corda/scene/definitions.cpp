@@ -6,6 +6,7 @@
 #include "corda/core/image.hpp"
 #include "corda/scene/field.hpp"
 #include "corda/scene/readers.hpp"
+#include "corda/view/arrows.hpp"
 #include "corda/view/font.hpp"
 
 namespace corda::scene {
@@ -104,6 +105,23 @@ std::vector<DefProblem> problems_of(const StyleDef& style, const std::vector<Rop
     for (const NetDef& net : nets) most = std::max(most, net.points_m.size());
     const auto count = static_cast<std::int64_t>(most);
     std::vector<DefProblem> problems;
+    add_if_empty("color_range", style.color_range, problems);
+    if (style.color_range && !quantity_of(style.color_by))
+        problems.push_back({"color_range",
+                            {},
+                            "the colours show no quantity",
+                            "give style.color_by = \"tension\", \"speed\" or \"strain\", or remove it"});
+    if (style.arrow_scale_px && style.arrows == Arrows::kNone)
+        problems.push_back({"arrow_scale", {}, "there are no arrows", "give style.arrows, or remove it"});
+    const bool has_balls =
+        style.payload && std::ranges::any_of(ropes, [](const RopeDef& rope) {
+            return rope.payload_kg > 0.0 || rope.points_m.size() <= view::kLinksOfPendulum + 1;
+        });
+    if (style.payload_radius_m && !has_balls)
+        problems.push_back({"payload_radius",
+                            {},
+                            "there are no balls",
+                            "give a rope a payload, with style.payload = true, or remove it"});
     if (!style.trail_of.empty() && style.trail_s == 0.0)
         problems.push_back(
             {"trail_of", {}, "no trail without a length", "give style.trail_s, or remove trail_of"});

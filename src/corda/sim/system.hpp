@@ -237,6 +237,15 @@ class MotionBounds {
         max_ = {std::max(max_.x, other.max_.x), std::max(max_.y, other.max_.y)};
     }
     [[nodiscard]] bool empty() const { return max_.x < min_.x; }
+    /// With `more_m` more on each side.
+    [[nodiscard]] MotionBounds widened(double more_m) const {
+        MotionBounds wide = *this;
+        if (more_m > 0.0 && !empty()) {
+            wide.include(min_.x - more_m, min_.y - more_m);
+            wide.include(max_.x + more_m, max_.y + more_m);
+        }
+        return wide;
+    }
     [[nodiscard]] Vec2 min_m() const { return min_; }
     [[nodiscard]] Vec2 max_m() const { return max_; }
 

@@ -80,7 +80,8 @@ struct StyleDef {
     std::optional<double> arrow_scale_px;
     std::optional<double> rope_width_px;  ///< 0.1 .. 1000; default: side / 120, at least 2
     std::optional<double> net_width_px;   ///< 0.1 .. 1000; default: half of a rope's, at least 2
-    bool payload = true;   ///< draw payloads, and the masses of ropes of up to 3 links, as balls
+    bool payload = true;  ///< draw payloads, and the masses of ropes of up to 3 links, as balls
+    std::optional<double> payload_radius_m;  ///< 1e-9 .. 1e9, of all balls; default: by mass, in the picture
     bool supports = true;  ///< draw plates at pinned particles, or rings if something rises above them
     bool halo = true;      ///< leave a gap around each body in the bodies behind it
     double trail_s = 0.0;  ///< 0 .. 3600: how long the path of a particle remains; 0: no trail
@@ -109,7 +110,7 @@ struct BodyStyleDef {
     std::optional<double> width_px;      ///< 0.1 .. 1000; default: rope_width_px, or net_width_px for a net
     std::optional<double> end_width_px;  ///< of a rope's last link, if width_px is of its first; 0.1 .. 1000
     /// Drawn in one layer with the body before it: without a halo between them, and in a gradient of the
-    /// theme's colours along such a row, except bodies with a colour of their own.
+    /// palette, or of the theme's, along such a row, except bodies with a colour of their own.
     bool merged = false;
     std::string label;  ///< its name; empty: none
     /// Where the label is; default: at the pin, unless several bodies with labels share it.

@@ -54,7 +54,8 @@ double link_radius_px(const Body& body, const BodyView& view, std::size_t link) 
     return view.radius_px + share * (view.end_radius_px - view.radius_px);
 }
 
-std::vector<Ball> balls_of(const System& system, const Body& body, const BodyView& view, double side_px) {
+std::vector<Ball> balls_of(const System& system, const Body& body, const BodyView& view,
+                           const StyleDef& style, double side_px) {
     std::vector<Ball> balls;
     if (body.is_net) return balls;
     const std::size_t last = body.first_particle + body.particle_count - 1;
@@ -65,10 +66,11 @@ std::vector<Ball> balls_of(const System& system, const Body& body, const BodyVie
         const bool has_payload = i == last && body.payload_kg > 0.0;
         if (system.stays_pinned(i) || !(is_bob || has_payload)) continue;
         const double mass_kg = is_bob ? system.mass_kg[i] : body.payload_kg;
-        const double radius_px = ball_radius(mass_kg, rope_kg) * side_px;
+        const double radius_px = style.payload_radius_m ? 0.0 : ball_radius(mass_kg, rope_kg) * side_px;
         const std::size_t link =
             body.first_bar + std::max(i, body.first_particle + 1) - body.first_particle - 1;
-        balls.push_back({i, link, std::max(radius_px, kBallPerLine * link_radius_px(body, view, link))});
+        balls.push_back({i, link, std::max(radius_px, kBallPerLine * link_radius_px(body, view, link)),
+                         style.payload_radius_m.value_or(0.0)});
     }
     return balls;
 }
@@ -84,12 +86,14 @@ std::size_t end_of_merged(const std::vector<BodyView>& bodies, std::size_t first
 void color_merged(const StyleDef& style, const std::vector<BodyStyleDef>& body_styles,
                   std::vector<BodyView>& bodies) {
     const ColorScale scale = scale_of(Quantity::kSpeed, {}, style);
+    std::span<const Color> colors = scale.colors;
+    if (!style.palette.empty()) colors = style.palette;
     for (std::size_t first = 0, end = 0; first < bodies.size(); first = end) {
         end = end_of_merged(bodies, first, bodies.size());
         for (std::size_t i = first; i < end && end - first > 1; ++i) {
             const double share = static_cast<double>(i - first) / static_cast<double>(end - first - 1);
             if (i >= body_styles.size() || !body_styles[i].color)
-                bodies[i].color = scale.color(scale.low + share * (scale.high - scale.low));
+                bodies[i].color = mixed_color(colors, share);
         }
     }
 }
@@ -272,7 +276,7 @@ SceneView make_scene_view(const System& system, Vec2 gravity_m_s2, const StyleDe
         BodyView& drawn = view.bodies.emplace_back(
             BodyView{color, by_link ? own.link_colors : std::vector<Color>{}, 0.5 * body_px, 0.5 * end_px,
                      marker_px(kPinnedRim), marker_px(kFreeRim), i > 0 && own.merged, own.label_at});
-        if (style.payload) drawn.balls = balls_of(system, body, drawn, side_px);
+        if (style.payload) drawn.balls = balls_of(system, body, drawn, style, side_px);
         view.ball_count += drawn.balls.size();
         line_px.push_back(drawn.radius_px);
     }
@@ -307,7 +311,8 @@ std::vector<Drawn> drawn_bodies(const SceneView& view, std::span<const MotionBou
         if (view.style.markers != Markers::kNone)
             radius_px = std::max(radius_px, look.pinned_marker_radius_px);
         all.push_back(around(lines, radius_px));
-        for (const Ball& ball : look.balls) all.push_back(around(bounds[ball.particle], ball.radius_px));
+        for (const Ball& ball : look.balls)
+            all.push_back(around(bounds[ball.particle].widened(ball.radius_m), ball.radius_px));
     }
     return all;
 }
@@ -359,7 +364,7 @@ void draw_bodies(const SceneView& view, std::size_t first, std::size_t end, cons
     const bool is_tinted = view.scale || !is_one || !view.bodies[first].link_colors.empty();
     list.add_layer(view.bodies[first].color, is_tinted);
     const double outline_px = kOutlineWidth * view.side_px;
-    const auto inside_px = [&](const Ball& ball) { return ball.radius_px - 0.5 * outline_px; };
+    const auto inside_px = [&](const Ball& ball) { return ball.radius_in(camera) - 0.5 * outline_px; };
     for (std::size_t b = first; b < end; ++b) {
         // Only the background is behind the first body.
         const double halo_per_radius = view.style.halo && first > 0 ? kHaloPerWidth * 2.0 : 0.0;

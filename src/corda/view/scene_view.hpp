@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -68,8 +69,13 @@ struct WholeMotion {
 /// A payload, or a mass of a pendulum.
 struct Ball {
     std::size_t particle = 0;
-    std::size_t link = 0;  ///< a link that ends there
-    double radius_px = 0.0;
+    std::size_t link = 0;    ///< a link that ends there
+    double radius_px = 0.0;  ///< at least
+    double radius_m = 0.0;   ///< and at least
+
+    [[nodiscard]] double radius_in(const Camera& camera) const {
+        return std::max(radius_px, radius_m * camera.pixels_per_metre());
+    }
 };
 
 /// How a body is drawn.

@@ -60,6 +60,8 @@ TEST(Definitions, HaveValuesWithinTheirRange) {
              {"style.rope_width_px", [](Scene&s, double v) { s.style.rope_width_px = v; }, {0.09, 1001.0}},
              {"style.net_width_px", [](Scene&s, double v) { s.style.net_width_px = v; }, {0.0, -1.0}},
              {"style.marker_radius_px", [](Scene&s, double v) { s.style.marker_radius_px = v; }, {0.0}},
+             {"style.payload_radius", [](Scene&s, double v) { s.style.payload_radius_m = v; }, {0.0, 1e10}},
+             {"style.arrow_scale", [](Scene&s, double v) { s.style.arrow_scale_px = v; }, {0.0, 1e13}},
              {"style.bar_width_px", [](Scene&s, double v) { s.style.bar_width_px = v; }, {1001.0}},
              {"style.trail_s", [](Scene&s, double v) { s.style.trail_s = v; }, {-0.1, 3601.0}},
              {"rope[0].width_px", [](Scene&s, double v) { s.body_styles[0].width_px = v; }, {0.0, 1001.0}},

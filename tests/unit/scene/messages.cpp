@@ -326,6 +326,10 @@ bars = "imaginary" | 4:8 style.bars | give one of: none, real, all
 marker_radius_px = 0 | 4:20 style.marker_radius_px | 0 is not >= 0.1
 color_by = "tensoin" | 4:12 style.color_by | "tensoin" is unknown; did you mean "tension"?
 color_by = 3 | 4:12 style.color_by | 3 is an integer, not text
+color_range = [0, 1] | 4:15 style.color_range | the colours show no quantity; give style.color_by | + color_by = "speed" ; color_range = [0, 1] =>
+color_by = "speed"\ncolor_range = [3, 2] | 5:19 style.color_range[1] | 2 is not above 3; give the lower end first | [3, 2] => [2, 3]
+arrow_scale = 100 | 4:15 style.arrow_scale | there are no arrows; give style.arrows | + arrows = "weight" ; arrow_scale = 100 =>
+payload = false\npayload_radius = 0.1 | 5:18 style.payload_radius | there are no balls; give a rope a payload | payload = false => payload = true ; payload_radius = 0.1 =>
 trail_of = [-1] | 4:12 style.trail_of | no trail without a length; give style.trail_s, or remove trail_of | + trail_s = 1 ; trail_of = [-1] =>
 trail_s = 1\ntrail_of = [-1, 900] | 5:17 style.trail_of[1] | 900 is out of range; the particles of the longest rope or net are 0 .. 3 | , 900 => , 1
 @camera

@@ -64,6 +64,10 @@ TEST(WriteScene, EveryKeyComesBack) {
                  "[overlay]\ntitle = 'a \"quoted\" \\ title: Ä'\ntime = false\nplots = [\"tip\", "
                  "\"energy\"]\nlanguage = \"de\"\n"
                  "[camera]\ncenter = [0.1, -0.3]\nheight = 3.3\nmargin = 0.1\n"),
+             scene::with("[style]\ncolor_by = \"speed\"\ncolor_range = [-0.1, 7]\narrows = \"weight\"\n"
+                         "arrow_scale = 2.5\npayload_radius = 0.03\n"
+                         "[overlay]\nplots = [\"phase\", \"energy\"]\nenergy_zero = \"lowest\"\n"
+                         "plot_range = { angle = [-90, 90], phase = [-4, 4], energy = [0, 1e3] }\n"),
          }) {
         SCOPED_TRACE(toml);
         expect_round_trip(parse_scene(toml, "scene.toml"));

@@ -160,6 +160,15 @@ TEST(SceneView, MergedBodiesAreOneTintedLayerInAGradient) {
     EXPECT_GT(list.capsules[5].halo_radius, 0.0F);
     styles[2].color = Color{1, 2, 3, 255};
     EXPECT_EQ(draw(ropes, style, styles).capsules.at(10).tint, (Tint{1, 2, 3}));
+    // A palette is gone through; the rope before takes its first colour in turn.
+    styles[2].color.reset();
+    style.palette = {{10, 0, 0}, {20, 0, 0}, {20, 0, 90}};
+    const DrawList own = draw(ropes, style, styles);
+    EXPECT_EQ(own.layers[0].color, style.palette[0]);
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_EQ(own.capsules.at(5 + 5 * i).tint,
+                  (Tint{style.palette[i].r, style.palette[i].g, style.palette[i].b}))
+            << i;
 }
 
 TEST(SceneView, EveryBodyIsOneLayerOfItsColour) {
@@ -224,6 +233,22 @@ TEST(SceneView, APayloadIsABallThatGrowsWithItsMass) {
     }
     style.payload = false;
     EXPECT_EQ(draw({rope}, style).layers.size(), 1U);
+}
+
+TEST(SceneView, ABallHasTheRadiusThatIsGivenInThePicture) {
+    StyleDef style = plain();
+    style.payload = true;
+    RopeDef rope = reference::straight_rope(9, 1.0, 90.0);
+    rope.payload_kg = 2.0;
+    for (const double radius_m : {0.1, 0.02, 1e-6}) {
+        style.payload_radius_m = radius_m;
+        const DrawList list = draw({rope}, style);
+        const Capsule& link = list.capsules[0];
+        const Capsule& ball = list.capsules[list.layers[0].capsule_count - 1];
+        // Nine links of 1 m in all; never less than a little more than the rope.
+        EXPECT_NEAR(ball.radius + 0.125, std::max(radius_m * 9.0 * link.length, 3.2), 1e-3) << radius_m;
+        EXPECT_LE(ball.ax + ball.radius, kWidth);
+    }
 }
 
 TEST(SceneView, RopesOfUpToThreeLinksHaveABobOnEveryFreeMass) {
