@@ -88,7 +88,7 @@ view::PoseTime add_pose(const Look& look, const State& state, const view::Camera
         color.a = static_cast<std::uint8_t>(std::lround(opacity * color.a));
     }
     const view::BodyLabel label = view::label_at(look.view, tip_of(*look.system), "");
-    return {label, {map.at(state, label.particle), map.at(state, label.from)}, opacity};
+    return {label, view::place_of(label, state, map), opacity};
 }
 
 }  // namespace

@@ -103,6 +103,33 @@ std::optional<view::ColorScale> color_scale(const Scene& scene, const sim::Histo
     return quantity ? std::optional(view::scale_of(*quantity, histogram, scene.style)) : std::nullopt;
 }
 
+/// The camera at rest that shows all particles within these bounds.
+CameraDef fitted_camera(const Look& look, std::span<const MotionBounds> bounds) {
+    std::vector<view::Drawn> drawn = view::drawn(look.view, bounds);
+    std::ranges::copy(view::drawn_labels(look.overlay.area, look.overlay.labels, bounds),
+                      std::back_inserter(drawn));
+    const VideoDef& video = look.scene.video;
+    return view::fit_camera(look.scene.camera, look.system->origin_m, drawn, video.width_px, video.height_px,
+                            look.overlay.insets);
+}
+
+/// Raises labels above pins over what passes there at frame times. The camera is fitted to raised ones; then
+/// they are raised as that camera, given by a scene, would have them.
+void raise_labels(const Motion& motion, std::span<const MotionBounds> bounds, Look& look) {
+    const bool is_fitted = !look.track && !look.scene.camera.height_m;
+    for (const bool is_first : {true, false}) {
+        if (is_first && !is_fitted) continue;
+        view::LabelRoom room(look.overlay.area, look.view, look.overlay.labels);
+        if (!room.is_needed(bounds)) return;
+        motion.for_each(frame_times_s(look.scene, motion), [&](const State& state, const Figures&) {
+            check_cancelled();
+            room.include(state, look.map_at(state.time_s));
+        });
+        if (!room.raise_labels(is_first)) return;
+        if (is_first) look.camera = fitted_camera(look, bounds);
+    }
+}
+
 /// The look of a scene that moves like this, with a camera at rest and without trails.
 Look fitted_look(const Scene& scene, const System& system, const view::WholeMotion& motion,
                  std::span<const view::PlotData> plots) {
@@ -114,12 +141,9 @@ Look fitted_look(const Scene& scene, const System& system, const view::WholeMoti
         overlay_of(scene, {motion.scale, view.arrows.scale(),
                            sim::energy_scale_j(system, sim::Forces(scene.world).on_particles(system)),
                            view::body_labels(view), plots, body_colors});
-    std::vector<view::Drawn> drawn = view::drawn(view, motion.bounds);
-    std::ranges::copy(view::drawn_labels(overlay.area, overlay.labels, motion.bounds),
-                      std::back_inserter(drawn));
-    const CameraDef camera = view::fit_camera(scene.camera, system.origin_m, drawn, video.width_px,
-                                              video.height_px, overlay.insets);
-    return {scene, &system, std::move(view), std::move(overlay), camera};
+    Look look{scene, &system, std::move(view), std::move(overlay), {}};
+    look.camera = fitted_camera(look, motion.bounds);
+    return look;
 }
 
 /// Height of a picture in which the origin of these bounds of each particle is in the middle of what panels
@@ -244,7 +268,9 @@ Look look_at(const Scene& scene, const Motion& motion) {
     } else if (scene.camera.moves()) {
         look.track = track_of_path(look);
     }
+    raise_labels(motion, bounds, look);
     look.paths = paths_of(scene, motion);
+    if (scene.overlay.energy) look.energy_zero_j = energy_zero_j(scene, motion);
     return look;
 }
 
@@ -265,4 +291,3 @@ double PictureScale::largest_error_px_per_metre(const MotionBounds& bounds) cons
 }
 
 }  // namespace corda::film
-    if (scene.overlay.energy) look.energy_zero_j = energy_zero_j(scene, motion);

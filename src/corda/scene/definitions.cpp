@@ -10,7 +10,6 @@
 #include "corda/view/font.hpp"
 
 namespace corda::scene {
-
 namespace {
 
 void add_if_empty(std::string_view key, const std::optional<Interval>& range,
@@ -22,6 +21,7 @@ void add_if_empty(std::string_view key, const std::optional<Interval>& range,
 }
 
 }  // namespace
+
 std::vector<DefProblem> problems_of(const VideoDef& video) {
     // A speed out of its range is refused by itself.
     if (video.speed.is_rate() && !video.scene_fraction().is_rate())
@@ -71,7 +71,6 @@ std::vector<DefProblem> problems_of(const OverlayDef& overlay, const std::vector
                 "pinned",
                 "pin fewer, give ropes that move first, or remove this plot");
     }
-    return problems;
     const bool shows_energy = overlay.energy || std::ranges::count(plots, LivePlot::kEnergy) > 0;
     if (overlay.energy_zero != EnergyZero::kStart && !shows_energy)
         problems.push_back({"energy_zero",
@@ -96,6 +95,7 @@ std::vector<DefProblem> problems_of(const PlotRangesDef& ranges, const std::vect
                                 fmt::format("the plot {} is not shown", key.name),
                                 "add it to overlay.plots, or remove its range"});
     }
+    return problems;
 }
 
 std::vector<DefProblem> problems_of(const StyleDef& style, const std::vector<RopeDef>& ropes,

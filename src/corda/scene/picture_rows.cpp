@@ -175,15 +175,15 @@ std::vector<Key> overlay_keys() {
         {"overlay", "plots", live_plots(), "", field(&OverlayDef::plots), "live plots next to the picture",
          "over time: energies, angles of ropes, distance of the tips of ropes 0 and 1, x and y of the first "
          "tip; phase: angular velocity against angle"},
-        {"overlay", "language", one_of({"en", "de", "pt", "es", "fr"}), "", field(&OverlayDef::language),
-         "the language of words and the decimal sign", "in plots and reports too"},
-        {"overlay", "texts", of(Kind::kTables), "", none(),
         {"overlay", "plot_range", of(Kind::kTable), "", none(),
          "plot_range = { energy = [-10.0, 10.0], angle = [-90.0, 90.0] }",
          "the ends of the value axes of plots; curves are cut there"},
         {"overlay", "energy_zero", one_of({"start", "lowest"}), "", field(&OverlayDef::energy_zero),
          "where the potential energy of plots and texts is 0",
          "at the start, or where it is lowest during the motion"},
+        {"overlay", "language", one_of({"en", "de", "pt", "es", "fr"}), "", field(&OverlayDef::language),
+         "the language of words and the decimal sign", "in plots and reports too"},
+        {"overlay", "texts", of(Kind::kTables), "", none(),
          "texts = [{ text = \"released\", at = [0.5, 0.1], from = 0.0, to = 1.5 }]",
          "texts in the picture, for a time each"},
         {"overlay", "text_px", number({.low = 4.0, .high = 400.0}), "px",
@@ -192,9 +192,6 @@ std::vector<Key> overlay_keys() {
     };
 }
 
-std::vector<Key> overlay_text_keys() {
-    const std::string_view section = "overlay.texts";
-    return {
 std::vector<Key> plot_range_keys() {
     const auto row = [](LivePlot plot, const char* name, const char* unit, const char* meaning,
                         const char* note = "") {
@@ -217,6 +214,9 @@ std::vector<Key> plot_range_keys() {
         row(LivePlot::kTip, "tip", "m", "the positions")};
 }
 
+std::vector<Key> overlay_text_keys() {
+    const std::string_view section = "overlay.texts";
+    return {
         {section, "text", of(Kind::kText), "", required(field(&OverlayTextDef::text)), "the text"},
         {section, "at", pair("[x, y]", {.low = 0.0, .high = 1.0}), "", field(&OverlayTextDef::at),
          "the place of its middle", "shares of the picture, from its upper left"},

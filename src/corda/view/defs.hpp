@@ -122,7 +122,6 @@ struct BodyStyleDef {
 /// logarithmic axis; the position of the first tip over time.
 enum class LivePlot { kEnergy, kAngle, kPhase, kDivergence, kTip };
 
-/// The language of words and the decimal sign in pictures and reports.
 /// Where the potential energy is 0: at the start, or where it is lowest during the motion.
 enum class EnergyZero { kStart, kLowest };
 
@@ -133,6 +132,7 @@ struct PlotRangesDef {
     std::array<std::optional<Interval>, 5> of;  ///< in the order of LivePlot
 };
 
+/// The language of words and the decimal sign in pictures and reports.
 enum class Language { kEnglish, kGerman, kPortuguese, kSpanish, kFrench };
 
 /// A text in the picture.
@@ -156,9 +156,9 @@ struct OverlayDef {
     bool energy = false;          ///< the error of the energy (Figures::energy_error)
     bool method = false;          ///< the methods, and their error estimate
     std::vector<LivePlot> plots;  ///< each once; a frame without room for all shows the first ones
-    Language language = Language::kEnglish;
     PlotRangesDef plot_range;
     EnergyZero energy_zero = EnergyZero::kStart;  ///< of energies that plots and texts show
+    Language language = Language::kEnglish;
     std::vector<OverlayTextDef> texts;  ///< not in a picture of several poses
     /// 4 .. 400: the size of the text at the edges; default: grows with the shorter side
     std::optional<double> text_px;

@@ -52,16 +52,16 @@ BodyLabel label_of(const SceneView& view, std::size_t b) {
     return {body.label, *pin, *pin, clear_px};
 }
 
-/// Free distance around the particle of a label.
-double clear_px(const TextArea& area, const BodyLabel& label) {
-    return label.clear_px + (kGap + label.row * kLine) * area.em_px;
+/// Distance of a label from its particle, if `free_px` around that are free.
+double distance_px(const TextArea& area, const BodyLabel& label, double free_px) {
+    return free_px + (kGap + label.row * kLine) * area.em_px + label.raise_px;
 }
 
 /// The box of a label in the direction of its line, turned by an eighth turn `turns` times.
 PixelRect label_box(const TextArea& area, const std::string& text, const LabelPlace& place, int turns,
                     double clear_px, const Font& font) {
-    const auto& [at, from] = place;
-    PixelPoint along{at.x - from.x, at.y - from.y};
+    const PixelPoint at = place.at;
+    PixelPoint along{at.x - place.from.x, at.y - place.from.y};
     const double length = sim::length(along.x, along.y);
     along = length > 0.0 ? PixelPoint{along.x / length, along.y / length} : PixelPoint{0.0, -1.0};
     constexpr double kHalfRoot = 0.70710678118654752;
@@ -84,12 +84,16 @@ PixelRect label_box(const TextArea& area, const std::string& text, const LabelPl
 BodyLabel label_at(const SceneView& view, std::size_t particle, std::string text) {
     const std::size_t b = body_of(*view.system, particle);
     const Body& body = view.system->bodies[b];
-    double clear_px = std::max(view.bodies[b].radius_px, view.bodies[b].end_radius_px);
-    for (const Ball& ball : view.bodies[b].balls)
-        if (ball.particle == particle) clear_px = ball.radius_px;
-    const bool is_end = free_end(*view.system, body) == particle;
-    const std::size_t next = particle == body.first_particle ? particle + 1 : particle - 1;
-    return {std::move(text), particle, is_end ? next : particle, clear_px};
+    BodyLabel label{std::move(text), particle, particle,
+                    std::max(view.bodies[b].radius_px, view.bodies[b].end_radius_px)};
+    for (const Ball& ball : view.bodies[b].balls) {
+        if (ball.particle != particle) continue;
+        label.clear_px = ball.radius_px;
+        label.clear_m = ball.radius_m;
+    }
+    if (free_end(*view.system, body) == particle)
+        label.from = particle == body.first_particle ? particle + 1 : particle - 1;
+    return label;
 }
 
 std::vector<BodyLabel> body_labels(const SceneView& view) {
@@ -106,11 +110,15 @@ std::vector<BodyLabel> body_labels(const SceneView& view) {
     return labels;
 }
 
+LabelPlace place_of(const BodyLabel& label, const State& state, const Camera& camera) {
+    return {camera.at(state, label.particle), camera.at(state, label.from),
+            std::max(label.clear_px, label.clear_m * camera.pixels_per_metre())};
+}
+
 std::vector<LabelPlace> places_of(std::span<const BodyLabel> labels, const State& state,
                                   const Camera& camera) {
     std::vector<LabelPlace> places;
-    for (const BodyLabel& label : labels)
-        places.push_back({camera.at(state, label.particle), camera.at(state, label.from)});
+    for (const BodyLabel& label : labels) places.push_back(place_of(label, state, camera));
     return places;
 }
 
@@ -126,9 +134,9 @@ std::vector<Drawn> drawn_labels(const TextArea& area, std::span<const BodyLabel>
     std::vector<Drawn> drawn;
     for (const BodyLabel& label : labels) {
         const double width_px = area.words.width_px(label.text, area.em_px);
-        const double gap_px = clear_px(area, label);
+        const double gap_px = distance_px(area, label, label.clear_px);
         Drawn text;
-        text.bounds = bounds[label.particle];
+        text.bounds = bounds[label.particle].widened(label.clear_m);
         text.up_px = gap_px + kAscent * area.em_px;
         const bool is_above = label.from == label.particle;
         text.left_px = text.right_px = is_above ? 0.5 * width_px : gap_px + width_px;
@@ -139,8 +147,95 @@ std::vector<Drawn> drawn_labels(const TextArea& area, std::span<const BodyLabel>
 }
 
 void draw_label(const TextArea& area, const BodyLabel& label, const LabelPlace& place, DrawList& list) {
-    const PixelRect box = label_box(area, label.text, place, 0, clear_px(area, label), area.words);
+    const PixelRect box =
+        label_box(area, label.text, place, 0, distance_px(area, label, place.clear_px), area.words);
     if (!box.empty()) area.words.write({box.x0, box.y1, area.em_px, area.color, label.text}, list);
+}
+
+LabelRoom::LabelRoom(const TextArea& area, const SceneView& view, std::vector<BodyLabel>& labels)
+    : area_(&area),
+      view_(&view),
+      labels_(&labels),
+      above_px_(labels.size(), area.height_px),
+      is_taken_(labels.size(), std::vector<bool>(static_cast<std::size_t>(area.height_px))) {
+    for (BodyLabel& label : labels) label.raise_px = 0.0;
+}
+
+bool LabelRoom::is_needed(std::span<const MotionBounds> bounds) const {
+    double top_m = -HUGE_VAL;
+    for (const MotionBounds& one : bounds) top_m = std::max(top_m, one.max_m().y);
+    return std::ranges::any_of(*labels_, [&](const BodyLabel& label) {
+        return is_above_pin(label) && bounds[label.particle].min_m().y < top_m;
+    });
+}
+
+void LabelRoom::include(const State& state, const Camera& camera) {
+    const System& system = *view_->system;
+    for (std::size_t i = 0; i < labels_->size(); ++i) {
+        if (!is_above_pin((*labels_)[i])) continue;
+        const PixelPoint pin = camera.at(state, (*labels_)[i].particle);
+        above_px_[i] = std::min(above_px_[i], pin.y);
+        const auto from_pin = [&](std::size_t particle) {
+            const PixelPoint at = camera.at(state, particle);
+            return Vec2{at.x - pin.x, pin.y - at.y};
+        };
+        for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+            const Body& body = system.bodies[b];
+            const BodyView& look = view_->bodies[b];
+            const double radius_px = std::max(look.radius_px, look.end_radius_px);
+            for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k)
+                if (system.has_bar_at(k, state.time_s))
+                    add_line(i, from_pin(system.bars[k].a), from_pin(system.bars[k].b), radius_px);
+            for (const Ball& ball : look.balls)
+                add_line(i, from_pin(ball.particle), from_pin(ball.particle), ball.radius_in(camera));
+        }
+    }
+}
+
+void LabelRoom::add_line(std::size_t i, Vec2 a_px, Vec2 b_px, double radius_px) {
+    const double half_px = 0.5 * area_->words.width_px((*labels_)[i].text, area_->em_px) + radius_px;
+    if (a_px.x > b_px.x) std::swap(a_px, b_px);
+    if (a_px.x > half_px || b_px.x < -half_px) return;
+    const auto height_at = [&](double x_px) {
+        return a_px.y + (x_px - a_px.x) / (b_px.x - a_px.x) * (b_px.y - a_px.y);
+    };
+    const double from_px = a_px.x < -half_px ? height_at(-half_px) : a_px.y;
+    const double to_px = b_px.x > half_px ? height_at(half_px) : b_px.y;
+    std::vector<bool>& rows = is_taken_[i];
+    const auto row = [&](double height_px) {
+        return static_cast<std::size_t>(std::clamp(height_px, 0.0, static_cast<double>(rows.size())));
+    };
+    const std::size_t end = row(std::max(from_px, to_px) + radius_px);
+    for (std::size_t k = row(std::min(from_px, to_px) - radius_px); k < end; ++k) rows[k] = true;
+}
+
+bool LabelRoom::raise_labels(bool will_fit) {
+    bool are_raised = false;
+    const int gap_px = rounded(kGap * area_->em_px);
+    const int text_px = rounded(kAscent * area_->em_px);
+    for (std::size_t i = 0; i < labels_->size(); ++i) {
+        BodyLabel& label = (*labels_)[i];
+        const std::vector<bool>& rows = is_taken_[i];
+        const auto is_free = [&](int first, int end) {
+            for (int k = std::max(first, 0); k < std::min<int>(end, static_cast<int>(rows.size())); ++k)
+                if (rows[static_cast<std::size_t>(k)]) return false;
+            return true;
+        };
+        for (std::size_t k = 0; k < i; ++k)  // its row is above those of the same pin
+            if (are_together(*view_->system, (*labels_)[k].particle, label.particle) && label.row > 0)
+                label.raise_px = std::max(label.raise_px, (*labels_)[k].raise_px);
+        const int least_px = rounded(distance_px(*area_, label, label.clear_px));
+        if (is_free(least_px, least_px + text_px)) continue;
+        const int most_px =
+            will_fit ? static_cast<int>(rows.size()) : static_cast<int>(above_px_[i]) - text_px;
+        for (int at_px = least_px + 1; at_px <= most_px; ++at_px) {
+            if (!is_free(at_px - gap_px, at_px + text_px + gap_px)) continue;
+            label.raise_px += at_px - least_px;
+            break;
+        }
+        are_raised = are_raised || label.raise_px > 0.0;
+    }
+    return are_raised;
 }
 
 void draw_times(const TextArea& area, std::span<const PoseTime> poses, DrawList& list) {
@@ -153,7 +248,7 @@ void draw_times(const TextArea& area, std::span<const PoseTime> poses, DrawList&
         const auto distance_px = [](const PixelRect& box, const PoseTime& to) {  // from its ball
             const double x_px = std::clamp<double>(to.place.at.x, box.x0, box.x1) - to.place.at.x;
             const double y_px = std::clamp<double>(to.place.at.y, box.y0, box.y1) - to.place.at.y;
-            return sim::length(x_px, y_px) - to.label.clear_px;
+            return sim::length(x_px, y_px) - to.place.clear_px;
         };
         const auto is_clear = [&](const PixelRect& box) {  // whose time it is
             return std::ranges::all_of(poses, [&](const PoseTime& other) {
@@ -167,7 +262,7 @@ void draw_times(const TextArea& area, std::span<const PoseTime> poses, DrawList&
                        taken, [&](const PixelRect& other) { return around.intersected(other).empty(); });
         };
         for (int i = 0; i < 16; ++i) {  // near, then farther away
-            const double clear_px = pose->label.clear_px + gap_px + (i < 8 ? 0.0 : kLine * area.em_px);
+            const double clear_px = pose->place.clear_px + gap_px + (i < 8 ? 0.0 : kLine * area.em_px);
             const PixelRect box =
                 label_box(area, pose->label.text, pose->place, kTurns[i % 8], clear_px, area.font);
             if (!is_free(box) || !is_clear(box)) continue;

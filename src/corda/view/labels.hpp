@@ -17,8 +17,10 @@ struct BodyLabel {
     std::size_t particle = 0;
     /// The label continues the line from this particle; if it is `particle`, the label is above it.
     std::size_t from = 0;
-    double clear_px = 0.0;  ///< free distance around the particle
+    double clear_px = 0.0;  ///< free distance around the particle, at least
     int row = 0;            ///< above other labels of the same place
+    double clear_m = 0.0;   ///< and at least
+    double raise_px = 0.0;  ///< of a label above its particle, so that nothing passes it; see LabelRoom
 };
 
 /// The labels of bodies that have one: where its style says, else above its first pin, unless another
@@ -33,9 +35,11 @@ struct BodyLabel {
 struct LabelPlace {
     PixelPoint at;
     PixelPoint from;
+    double clear_px = 0.0;  ///< free distance around `at`
 };
 
 /// The places of labels in the picture of a state.
+[[nodiscard]] LabelPlace place_of(const BodyLabel& label, const State& state, const Camera& camera);
 [[nodiscard]] std::vector<LabelPlace> places_of(std::span<const BodyLabel> labels, const State& state,
                                                 const Camera& camera);
 
@@ -48,6 +52,34 @@ struct LabelPlace {
 
 /// Adds a label; one far outside the frame is left out.
 void draw_label(const TextArea& area, const BodyLabel& label, const LabelPlace& place, DrawList& list);
+
+/// The room above pins that ropes, nets and balls leave for labels during a motion.
+class LabelRoom {
+  public:
+    /// For labels of pins alone; others stay as they are. None is raised at first. The arguments must outlive
+    /// this.
+    LabelRoom(const TextArea& area, const SceneView& view, std::vector<BodyLabel>& labels);
+
+    /// False if no label is above a pin over which particles within these bounds rise.
+    [[nodiscard]] bool is_needed(std::span<const MotionBounds> bounds) const;
+    void include(const State& state, const Camera& camera);
+    /// Raises labels that something passes to where nothing does; true if there are any. `will_fit`: the
+    /// camera will be fitted to the raised ones; otherwise they are only raised within the frame.
+    [[nodiscard]] bool raise_labels(bool will_fit);
+
+  private:
+    /// Marks what is drawn along a line, whose ends are to the right of and above the pin of label `i`.
+    void add_line(std::size_t i, Vec2 a_px, Vec2 b_px, double radius_px);
+    [[nodiscard]] bool is_above_pin(const BodyLabel& label) const {
+        return label.from == label.particle && view_->system->is_pinned(label.particle);
+    }
+
+    const TextArea* area_;
+    const SceneView* view_;
+    std::vector<BodyLabel>* labels_;
+    std::vector<double> above_px_;             ///< of each label: from its pin to the edge, at least
+    std::vector<std::vector<bool>> is_taken_;  ///< of each label: rows of pixels above its pin, in its width
+};
 
 /// A pose among several in one picture.
 struct PoseTime {

@@ -4,8 +4,11 @@
 #include <utility>
 
 #include "corda/core/basics.hpp"
+#include "corda/film/draw.hpp"
 #include "corda/film/film.hpp"
+#include "corda/film/look.hpp"
 #include "support/failure.hpp"
+#include "support/image_matchers.hpp"
 
 namespace corda {
 namespace {
@@ -39,6 +42,66 @@ TEST(FilmEnergy, OfAnExactRunIsConserved) {
     EXPECT_GT(energy.kinetic_j, 0.9);
     EXPECT_EQ(energy.elastic_j, 0.0);
     EXPECT_NEAR(energy.kinetic_j + energy.potential_j(), 0.0, 1e-12);  // measured 9e-14
+}
+
+/// The ink of the label and the camera of a film at a time.
+std::pair<PixelRect, double> label_at(const Film& film, double time_s) {
+    view::DrawList list;
+    film::draw(film.look(), film.motion(), time_s, list);
+    for (const view::Text& text : list.texts)
+        if (text.utf8 == "label")
+            return {view::Font().ink(text), film.look().map_at(time_s).pixels_per_metre()};
+    return {};
+}
+
+Scene labelled(const std::string& rope, const std::string& more = "") {
+    return parse_scene("schema = 1\n[world]\nduration = 2.0\n[[rope]]\nlabel = \"label\"\n" + rope +
+                           "[video]\nsize = [320, 180]\nfps = 30\n" + more,
+                       "labelled.toml");
+}
+
+TEST(FilmLabels, OfAPinKeepClearOfWhatRisesAboveIt) {
+    const char* const kWhirling = "hang = { links = 1, length = 1.0 }\nvelocity = [8.0, 0.0]\n";
+    const Film film(labelled(kWhirling));
+    const auto [label, scale] = label_at(film, 0.5);
+    ASSERT_FALSE(label.empty());
+    const view::Camera map = film.look().map_at(0.0);
+    const State start = film.state(0);
+    const view::PixelPoint pin = map.at(start, 0);
+    EXPECT_LT(label.y1, pin.y - scale);  // the mass comes by at 1 m
+    EXPECT_GE(label.y0, 0);
+    EXPECT_EQ(label_at(film, 1.5).first, label);
+    // A scene that gives this camera has the same pictures.
+    Scene frozen = film.scene();
+    frozen.camera = film.camera();
+    EXPECT_TRUE(test::equal_images(Film(frozen).still(0.5), film.still(0.5)));
+    // A hanging rope leaves its label at the pin, and so does a given camera without room above the circle.
+    const Film low(labelled("hang = { links = 1, length = 1.0, angle_deg = 60.0 }\n"));
+    EXPECT_EQ(low.look().overlay.labels.at(0).raise_px, 0.0);
+    const Film narrow(labelled(kWhirling, "[camera]\ncenter = [0, 0]\nheight = 2.0\n"));
+    EXPECT_EQ(narrow.look().overlay.labels.at(0).raise_px, 0.0);
+    const Film wide(labelled(kWhirling, "[camera]\ncenter = [0, 0]\nheight = 4.0\n"));
+    EXPECT_GT(wide.look().overlay.labels.at(0).raise_px, 30.0);
+}
+
+TEST(FilmLabels, OfAPinKeepClearOfOtherRopes) {
+    // The second rope swings by above the pin of the first one; it passes 0.1 m above it.
+    const Film film(
+        labelled("hang = { links = 1, length = 0.5 }\n",
+                 "[[rope]]\nhang = { links = 1, length = 1.0, angle_deg = 80.0, from = [0, 1.1] }\n"));
+    const auto [label, scale] = label_at(film, 0.0);
+    EXPECT_GT(film.look().overlay.labels.at(0).raise_px, 0.0);
+    const State& start = film.state(0);
+    const view::PixelPoint other_pin = film.look().map_at(0.0).at(start, 2);
+    for (const double time_s : {0.3, 0.5, 0.55, 0.6}) {
+        const State state = film.state_at(time_s);
+        const view::PixelPoint tip = film.look().map_at(0.0).at(state, 3);
+        // The lowest point of the rope over the middle of the label is above or below the label's ink.
+        const double share = (0.5 * (label.x0 + label.x1) - other_pin.x) / (tip.x - other_pin.x);
+        if (!(share >= 0.0 && share <= 1.0)) continue;
+        const double y_px = other_pin.y + share * (tip.y - other_pin.y);
+        EXPECT_TRUE(y_px < label.y0 || y_px > label.y1) << time_s;
+    }
 }
 
 TEST(FilmMask, RefusesMoreBodiesThanItCanDistinguish) {

@@ -348,15 +348,15 @@ title = "\\u0633" | 4:9 overlay.title | the letters of U+0633 change next to oth
 font = "none.ttf" | 4:8 overlay.font | 'none.ttf' cannot be opened; give the path of a font
 font = "/dev/null" | 4:8 overlay.font | '/dev/null' is no font with outlines; give a .ttf or .otf file
 language = "it" | 4:12 overlay.language | "it" is unknown; give one of:  | "it" => "pt"
-plots = "energy" | 4:9 overlay.plots | "energy" is a string, not a list; write ["energy"] | "energy" => ["energy"]
-plots = ["tip", "tip"] | 4:17 overlay.plots[1] | the same plot twice; remove one | , "tip" =>
-plots = ["divergence"] | 4:10 overlay.plots[0] | give another [[rope]] or rope.copies, or remove this plot | } }] => } }, { hang = { links = 3, length = 2.0 } }] ; "divergence" =>
-@shape
 plots = ["angle"]\nplot_range = { energy = [0, 1] } | 5:25 overlay.plot_range.energy | the plot energy is not shown; add it to overlay.plots | "angle" => "energy" ; energy = [0, 1] =>
 plots = ["phase"]\nplot_range = { angle = [1, 1] } | 5:28 overlay.plot_range.angle[1] | 1 is not above 1; give the lower end first | [1, 1] => [-1, 1]
 plots = ["energy"]\nplot_range = { energy = 3 } | 5:25 overlay.plot_range.energy | , not [low, high]
 plot_range = { divergence = [0, 1] } | 4:30 overlay.plot_range.divergence[0] | 0 is not >= 1e-100
 energy_zero = "lowest" | 4:15 overlay.energy_zero | no energy is shown; give overlay.plots = ["energy"] | + plots = ["energy"] ; energy_zero = "lowest" =>
+plots = "energy" | 4:9 overlay.plots | "energy" is a string, not a list; write ["energy"] | "energy" => ["energy"]
+plots = ["tip", "tip"] | 4:17 overlay.plots[1] | the same plot twice; remove one | , "tip" =>
+plots = ["divergence"] | 4:10 overlay.plots[0] | give another [[rope]] or rope.copies, or remove this plot | } }] => } }, { hang = { links = 3, length = 2.0 } }] ; "divergence" =>
+@shape
 points = [[0, 0], [1, 0]]\npinned = []\n[overlay]\nplots = ["angle"] | 6:10 overlay.plots[0] | pin one particle of an open rope, or remove this plot | pinned = [] => pinned = [0] ; "angle" =>
 )";
 

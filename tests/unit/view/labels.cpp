@@ -79,7 +79,7 @@ TEST(TimesOfPoses, AreNearestToTheirOwnBalls) {
     std::vector<PoseTime> poses;
     for (int i = 0; i < 12; ++i) {
         const PixelPoint at{100.0 + 15.0 * i * i / 4.0, 200.0};
-        poses.push_back({{std::to_string(i), 0, 1, 12.0}, {at, {at.x, 100.0}}});
+        poses.push_back({{std::to_string(i), 0, 1, 12.0}, {at, {at.x, 100.0}, 12.0}});
     }
     DrawList list;
     list.width = 800;
