@@ -19,6 +19,22 @@ RoundNumber step_of(double extent, int most_steps) {
     return round_number_above(extent / most_steps);
 }
 
+/// The distance of labels that gives at most `most` steps, and labels at both ends if a number of two digits
+/// does.
+RoundNumber step_between(double low, double high, int most) {
+    constexpr double kSlack = 1e-9;
+    const auto is_whole = [](double number) { return std::abs(number - std::round(number)) < kSlack; };
+    const RoundNumber usual = step_of(high - low, most);
+    if (is_whole(low / usual.value()) && is_whole(high / usual.value())) return usual;
+    for (int steps = most; steps > 0; --steps) {
+        const double step = (high - low) / steps;
+        const int exponent = round_number_below(step).exponent - 1;
+        const double digits = step / power_of_10(exponent);
+        if (is_whole(digits) && is_whole(low / step)) return {static_cast<int>(std::round(digits)), exponent};
+    }
+    return usual;
+}
+
 std::vector<std::size_t> outline(const std::vector<PixelPoint>& points) {
     std::vector<std::size_t> kept;
     for (std::size_t first = 0; first < points.size();) {
@@ -75,7 +91,8 @@ void PlotAxis::set_labels(int most) {
     constexpr int kMaxDigits = 15;
     const RoundNumber step = is_log
                                  ? RoundNumber{std::max(1, static_cast<int>(std::ceil((high - low) / most)))}
-                                 : step_of(high - low, most);
+                             : is_given ? step_between(low, high, most)
+                                        : step_of(high - low, most);
     // Far from 0 it takes more digits to tell neighbours apart.
     int digits = kMinDigits;
     const double steps = std::max(std::abs(low), std::abs(high)) / step.value();

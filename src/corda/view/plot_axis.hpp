@@ -57,7 +57,7 @@ struct PlotAxis {
     /// Moves the ends outwards to values that have labels, at most `most_steps` steps apart, if they may be
     /// moved.
     void extend_to_labels(int most_steps);
-    /// Sets the labels: round values, at most `most` steps of them.
+    /// Sets the labels: round values, at most `most` steps of them, with given ends if they divide that.
     void set_labels(int most);
     /// Sets the labels of a horizontal axis, at most `most` steps, so that they are `gap_px` apart.
     void set_labels_apart(int most, int gap_px, int em_px, const Font& font);

@@ -25,6 +25,20 @@ TEST(PlotAxis, EndsAtRoundValues) {
     EXPECT_DOUBLE_EQ(axis.px(0.5), 70.0);
 }
 
+TEST(PlotAxis, HasLabelsAtTheEndsThatAreGiven) {
+    const auto texts = [](double low, double high, int most) {
+        PlotAxis axis{.low = low, .high = high, .low_px = 0, .high_px = 140, .is_given = true};
+        axis.extend_to_labels(most);
+        axis.set_labels(most);
+        return texts_of(axis);
+    };
+    EXPECT_THAT(texts(-90.0, 90.0, 4), ElementsAre("−90", "−45", "0", "45", "90"));
+    EXPECT_THAT(texts(-180.0, 180.0, 7), ElementsAre("−180", "−120", "−60", "0", "60", "120", "180"));
+    EXPECT_THAT(texts(0.0, 20.0, 7), ElementsAre("0", "5", "10", "15", "20"));
+    EXPECT_THAT(texts(0.03, 0.12, 4), ElementsAre("0.03", "0.06", "0.09", "0.12"));
+    EXPECT_THAT(texts(-4.0, 5.0, 5), ElementsAre("−4", "−2", "0", "2", "4"));  // no round steps end at both
+}
+
 TEST(PlotAxis, IsNotStretchedByRounding) {
     PlotAxis axis{.low = -40.0001, .high = 40.0, .low_px = 0, .high_px = 140};
     axis.extend_to_labels(5);
