@@ -95,7 +95,7 @@ EstimateCase wind(Random& random) {
     return made;
 }
 
-/// Pins that move differently, of a rope that stretches, or alike, of any rope.
+/// Pins that move differently or alike, of ropes that stretch and of rigid ones.
 EstimateCase two_moving_pins(Random& random) {
     const int links = pick(random, 3, 8);
     RopeDef rope = crooked_rope(random, links, any_angle(random), 1.2);
@@ -105,6 +105,8 @@ EstimateCase two_moving_pins(Random& random) {
     if (pick(random, 0, 2) == 0) {
         rope.moves.back() = rope.moves.front();
         rope.moves.back().pin = last;
+    } else if (pick(random, 0, 2) == 0) {
+        if (pick(random, 0, 3) == 0) rope.moves.pop_back();
     } else {
         rope.material.compliance_1_n = pick_log(random, 1e-4, 1e-2);
         rope.material.is_string = pick(random, 0, 2) == 0;

@@ -43,7 +43,7 @@ std::string_view remedy(Refusal::Reason reason) {
         case Reason::kUndecidedString:
             return "change its points or velocity a little";
         case Reason::kUnlikeMoves:
-            return "give all pins of a rope or net the same waves and path in moves, or use method auto or "
+            return "give all pins of a string or net the same waves and path in moves, or use method auto or "
                    "rattle, or let it stretch by a compliance";
         case Reason::kTautBetweenPins:
             return "let the rope sag between its pins (other points, or a string with a larger link_length), "

@@ -71,11 +71,6 @@ std::unique_ptr<Solver> make_solver_of(const System& system, const Forces& force
         return solve_in_frame_of_pins(system, forces, method, [&](const System& body, const Forces& there) {
             return make_solver_of(body, there, method, frame_interval_s);
         });
-    const bool is_elastic = std::ranges::all_of(
-        system.bodies, [](const Body& body) { return body.material.compliance_1_n > 0.0; });
-    if (!system.moves.empty() && std::holds_alternative<ExactDef>(method) && !is_elastic)
-        throw Refusal(Refusal::Reason::kUnlikeMoves,
-                      "method exact moves a body that does not stretch only if its pins move alike");
     if (!std::holds_alternative<RelaxationDef>(method)) refuse_bars_without_length(system);
     return with_solver(method, [&]<class S>(const auto& def) -> std::unique_ptr<Solver> {
         if constexpr (std::is_same_v<S, Exact>)

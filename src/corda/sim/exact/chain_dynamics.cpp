@@ -8,18 +8,12 @@
 #include <utility>
 
 #include "corda/sim/chain_tensions.hpp"
+#include "corda/sim/exact/chain_closing.hpp"
+#include "corda/sim/moving_pins.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::sim {
 namespace {
-
-/// A chain between two pins whose length exceeds their distance by less than this share is taut: its tensions
-/// are not determined.
-constexpr double kTaut = 1e-12;
-
-/// Newton steps that close a chain between two pins, all with the matrix of the first. Each step multiplies
-/// the gap by about its size relative to the chain, at most 1e-4.
-constexpr int kClosingSteps = 4;
 
 double length_of(Vec2 a) {
     return length(a.x, a.y);
@@ -28,29 +22,6 @@ double length_of(Vec2 a) {
 Vec2 at(const std::vector<double>& x, const std::vector<double>& y, std::size_t i) {
     return {x[i], y[i]};
 }
-
-/// The symmetric 2 x 2 matrix for closing a chain, the sum of a_i p_i p_i^T, plus a small multiple of the
-/// identity: links in one line cannot move their end along it and must stay unchanged.
-struct ClosingMatrix {
-    double xx = 0.0;
-    double xy = 0.0;
-    double yy = 0.0;
-
-    void add(double length_m, Vec2 across) {
-        xx += length_m * across.x * across.x;
-        xy += length_m * across.x * across.y;
-        yy += length_m * across.y * across.y;
-    }
-    /// The determinant in parts of the squared trace.
-    [[nodiscard]] double regularity() const { return (xx * yy - xy * xy) / ((xx + yy) * (xx + yy)); }
-    [[nodiscard]] Vec2 solve(Vec2 right) const {
-        const double extra = 1e-14 * (xx + yy);
-        const double x1 = xx + extra;
-        const double y1 = yy + extra;
-        const double determinant = x1 * y1 - xy * xy;
-        return {(y1 * right.x - xy * right.y) / determinant, (x1 * right.y - xy * right.x) / determinant};
-    }
-};
 
 // Numbers in parentheses are equations of src/corda/sim/exact/README.md.
 
@@ -93,11 +64,11 @@ void find_tensions(const Chains& chains, const Chain& chain, const double* y, Ch
     const double* const s = y + chains.link_count();
     const double* const omega = s + chains.link_count();
     const double* const length = chains.length_m.data();
-    const Vec2 uniform_m_s2 = chains.forces.uniform_m_s2();
     double* __restrict const along = of.along.data();
     for (std::size_t i = first; i <= last; ++i) along[i] = length[i] * (omega[i] * omega[i]);
-    if (chain.starts_pinned) along[first] += dot(uniform_m_s2, {y[first], s[first]});
-    if (chain.ends_pinned) along[last] -= dot(uniform_m_s2, {y[last], s[last]});
+    if (chain.starts_pinned)
+        along[first] += dot(chains.forces_at_start(chain).uniform_m_s2(), {y[first], s[first]});
+    if (chain.ends_pinned) along[last] -= dot(chains.forces_at_end(chain).uniform_m_s2(), {y[last], s[last]});
     if constexpr (kBends) {
         const std::vector<double>& couple = chains.bending.couple_n();
         for (std::size_t i = first; i < last; ++i) {
@@ -119,7 +90,6 @@ void accelerate(const Chains& chains, const Chain& chain, const double* y, const
     const double* const sine = of.sine.data();
     const double* const tension = of.tension_n.data();
     const double drag_1_s = chains.forces.drag_1_s();
-    const Vec2 uniform_m_s2 = chains.forces.uniform_m_s2();
     const std::size_t first = chain.first_link;
     const std::size_t last = first + chain.link_count - 1;
     const auto turn_link = [&](std::size_t i, double across) {
@@ -131,9 +101,12 @@ void accelerate(const Chains& chains, const Chain& chain, const double* y, const
     turn_link(first, pull_across(chain, of, 0));
     turn_link(last, pull_across(chain, of, chain.link_count - 1));
     if (chain.starts_pinned)
-        slope_omega[first] += dot(uniform_m_s2, left_of({c[first], s[first]})) * inverse_length[first];
+        slope_omega[first] +=
+            dot(chains.forces_at_start(chain).uniform_m_s2(), left_of({c[first], s[first]})) *
+            inverse_length[first];
     if (chain.ends_pinned)
-        slope_omega[last] -= dot(uniform_m_s2, left_of({c[last], s[last]})) * inverse_length[last];
+        slope_omega[last] -= dot(chains.forces_at_end(chain).uniform_m_s2(), left_of({c[last], s[last]})) *
+                             inverse_length[last];
     if constexpr (kBends) {
         const std::vector<double>& couple = chains.bending.couple_n();
         const std::vector<double>& inverse_mass = chains.inverse_mass_1_kg;
@@ -176,9 +149,10 @@ void evaluate(const Chains& chains, const double* y, ChainTensions& of, double* 
     }
 }
 
-/// Calls visit(particle, displacement from the chain's start, velocity) for each free particle of a chain.
+/// Calls visit(particle, displacement from where the chain starts at t = 0, velocity) for each free particle
+/// of a chain.
 template <class Visit>
-void walk(const Chains& chains, const Chain& chain, const double* y, const Visit& visit) {
+void walk(const Chains& chains, const Chain& chain, double time_s, const double* y, const Visit& visit) {
     const std::size_t links = chains.link_count();
     const auto along = [&](std::size_t link) {
         return chains.length_m[link] * Vec2{y[link], y[links + link]};
@@ -188,7 +162,10 @@ void walk(const Chains& chains, const Chain& chain, const double* y, const Visit
     };
     Vec2 moved;
     Vec2 velocity;
-    if (!chain.starts_pinned) {
+    if (chain.starts_pinned) {
+        moved = chains.pins[chain.start_pin].displacement(time_s);
+        velocity = chains.pins[chain.start_pin].velocity(time_s);
+    } else {
         moved = {y[chain.first_extra], y[chain.first_extra + 1]};
         velocity = {y[chain.first_extra + 2], y[chain.first_extra + 3]};
         for (std::size_t i = chain.first_link; i < chain.first_link + chain.link_count; ++i) {
@@ -205,6 +182,12 @@ void walk(const Chains& chains, const Chain& chain, const double* y, const Visit
     }
 }
 
+std::size_t pin_at(const Chains& chains, std::size_t particle) {
+    std::size_t k = chains.pins.size();
+    while (chains.pins[--k].particle != particle) continue;
+    return k;
+}
+
 void add_chain(Chains& chains, const System& system, const Body& body, std::size_t from, std::size_t to) {
     Chain chain;
     chain.first_link = chains.length_m.size();
@@ -216,6 +199,8 @@ void add_chain(Chains& chains, const System& system, const Body& body, std::size
     chain.starts_pinned = system.is_pinned(from);
     chain.ends_pinned = system.is_pinned(to);
     if (chain.starts_pinned && chain.ends_pinned && chain.link_count == 1) return;  // it never moves
+    if (chain.starts_pinned) chain.start_pin = pin_at(chains, from);
+    if (chain.ends_pinned) chain.end_pin = pin_at(chains, to);
     chain.start_m = at(system.x_m, system.y_m, from);
     chain.span_m = at(system.x_m, system.y_m, to) - chain.start_m;
     chain.inverse_mass_1_kg = system.inverse_mass_1_kg[from];
@@ -233,21 +218,28 @@ void add_chain(Chains& chains, const System& system, const Body& body, std::size
         fastest_m_s = std::max(fastest_m_s, length_of(at(system.vx_m_s, system.vy_m_s, particle)));
         chains.energy_offset_j += chains.mass_kg[particle] * chains.forces.potential_j_kg(chain.start_m);
     }
-    chain.inverse_timescale_1_s = chains.forces.inverse_timescale_1_s(chain.length_m, fastest_m_s);
+    for (const Forces* const forces : {&chains.forces_at_start(chain), &chains.forces_at_end(chain)})
+        chain.inverse_timescale_1_s =
+            std::max(chain.inverse_timescale_1_s, forces->inverse_timescale_1_s(chain.length_m, fastest_m_s));
     if (chain.starts_pinned && chain.ends_pinned)
         refuse_taut_between_pins(chain.length_m, chain.span_m, from, to);
     chains.list.push_back(chain);
 }
 
 /// Cuts a rope from each pin to the next, and from an end to its pin; a closed one round to its first pin.
-void add_body(Chains& chains, const System& system, const Body& body) {
+void add_body(Chains& chains, const System& system, const Body& body, std::span<const MovingPin> moving) {
     const std::size_t first = body.first_particle;
     const std::size_t end = first + body.particle_count;
     std::optional<std::size_t> last;
     for (std::size_t i = first; i < end; ++i) {
         if (!system.is_pinned(i)) continue;
         chains.mass_kg[i] = 0.0;
-        chains.pins.push_back({i, at(system.x_m, system.y_m, i)});
+        chains.pins.push_back({i, at(system.x_m, system.y_m, i), {}, {}, chains.forces});
+        if (const auto pin = std::ranges::find(moving, i, &MovingPin::particle); pin != moving.end()) {
+            chains.pins.back().displacement = pin->displacement;
+            chains.pins.back().velocity = pin->velocity;
+            chains.pins.back().forces = chains.forces.seen_from(pin->displacement);
+        }
         if (last || (i > first && body.is_chain))
             add_chain(chains, system, body, last ? *last : i, last ? i : first);
         last = i;
@@ -292,7 +284,7 @@ void start_center_of_mass(Chains& chains, const System& system, const Chain& cha
     }
     for (std::size_t i = 0; i < chain.link_count; ++i) chains.beyond[chain.first_link + i] /= mass_kg;
     double* const extra = chains.start.data() + chain.first_extra;
-    walk(chains, chain, chains.start.data(), [&](std::size_t particle, Vec2 moved, Vec2 /*velocity*/) {
+    walk(chains, chain, 0.0, chains.start.data(), [&](std::size_t particle, Vec2 moved, Vec2 /*velocity*/) {
         if (particle == chain.first_particle) extra[0] = -moved.x, extra[1] = -moved.y;
     });
     extra[2] = momentum_n_s.x / mass_kg;
@@ -300,10 +292,10 @@ void start_center_of_mass(Chains& chains, const System& system, const Chain& cha
 }
 
 /// Makes directions unit vectors and closes chains between two pins.
-void project_chains(const Chains& chains, double* y) {
+void project_chains(const Chains& chains, double time_s, double* y) {
     make_unit_vectors(chains.link_count(), y);
     for (const Chain& chain : chains.list) {
-        if (chain.starts_pinned && chain.ends_pinned) close_between_pins(chains, chain, y);
+        if (chain.starts_pinned && chain.ends_pinned) close_between_pins(chains, chain, time_s, y);
     }
 }
 
@@ -345,7 +337,7 @@ void set_start(Chains& chains, const System& system) {
         }
         if (!chain.starts_pinned) start_center_of_mass(chains, system, chain);
     }
-    project_chains(chains, y);
+    project_chains(chains, 0.0, y);
 }
 
 }  // namespace
@@ -354,9 +346,10 @@ Chains make_chains(const System& system, std::span<const Body> bodies, const For
     Chains chains{.forces = forces, .mass_kg = system.mass_kg};
     chains.links.resize(system.particle_count());
     chains.are_of_ring = !bodies.empty() && !bodies.front().is_chain;
+    const std::vector<MovingPin> moving = moving_pins(system);
     for (const Body& body : bodies) {
         assert(moves_as_chains(system, body));
-        add_body(chains, system, body);
+        add_body(chains, system, body, moving);
     }
     chains.bending = ChainBending(system, chains.links, chains.length_m);
     set_timescales(chains);
@@ -379,51 +372,19 @@ void add_particle(Chains& chains, const System& system, std::size_t particle, do
     chains.energy_offset_j += chains.mass_kg[particle] * chains.forces.potential_j_kg(chain.start_m);
 }
 
-void refuse_taut_between_pins(double length_m, Vec2 span_m, std::size_t from, std::size_t to) {
-    if (length_m - length_of(span_m) > kTaut * length_m) return;
-    throw Refusal(Refusal::Reason::kTautBetweenPins,
-                  "method exact cannot work out the tensions of a rope that is taut between two pins "
-                  "(particles " +
-                      std::to_string(from) + " and " + std::to_string(to) + ", " + std::to_string(length_m) +
-                      " m apart)");
-}
-
-void close_between_pins(const Chains& chains, const Chain& chain, double* y) {
-    const std::size_t links = chains.link_count();
-    const std::size_t end = chain.first_link + chain.link_count;
-    const auto direction = [&](std::size_t i) { return Vec2{y[i], y[links + i]}; };
-    ClosingMatrix matrix;
-    for (std::size_t i = chain.first_link; i < end; ++i)
-        matrix.add(chains.length_m[i], left_of(direction(i)));
-    for (int k = 0; k < kClosingSteps; ++k) {
-        Vec2 open = chain.span_m;
-        for (std::size_t i = chain.first_link; i < end; ++i) open = open - chains.length_m[i] * direction(i);
-        const Vec2 multiplier = matrix.solve(open);
-        for (std::size_t i = chain.first_link; i < end; ++i) {
-            const Vec2 across = left_of(direction(i));
-            const Vec2 turned = direction(i) + dot(across, multiplier) * across;
-            const double inverse = 1.0 / length_of(turned);
-            y[i] = inverse * turned.x;
-            y[links + i] = inverse * turned.y;
-        }
-    }
-    Vec2 open;
-    for (std::size_t i = chain.first_link; i < end; ++i) {
-        open = open - (chains.length_m[i] * y[2 * links + i]) * left_of(direction(i));
-    }
-    const Vec2 multiplier = matrix.solve(open);
-    for (std::size_t i = chain.first_link; i < end; ++i)
-        y[2 * links + i] += dot(left_of(direction(i)), multiplier);
-}
-
-double spread(const Chains& chains, const Chain& chain, const double* y) {
-    ClosingMatrix matrix;
-    for (std::size_t i = chain.first_link; i < chain.first_link + chain.link_count; ++i)
-        matrix.add(chains.length_m[i], {y[i], y[chains.link_count() + i]});
-    return matrix.regularity();
-}
-
 ChainDynamics::ChainDynamics(Chains chains) : chains_(std::move(chains)), scratch_(chains_.link_count()) {}
+
+void ChainDynamics::set_time(double time_s) {
+    time_s_ = time_s;
+    chains_.forces.set_time(time_s);
+    for (Chains::Pin& pin : chains_.pins) pin.forces.set_time(time_s);
+}
+
+double ChainDynamics::next_key_s(double time_s) const {
+    double next_s = chains_.forces.next_key_s(time_s);
+    for (const Chains::Pin& pin : chains_.pins) next_s = std::min(next_s, pin.forces.next_key_s(time_s));
+    return next_s;
+}
 
 void ChainDynamics::derivative(const double* y, double* slope) {
     if (chains_.bending.empty()) {
@@ -435,7 +396,7 @@ void ChainDynamics::derivative(const double* y, double* slope) {
 }
 
 void ChainDynamics::project(double* y) {
-    project_chains(chains_, y);
+    project_chains(chains_, time_s_, y);
 }
 
 std::vector<ErrorScale> ChainDynamics::error_scales() const {
@@ -453,11 +414,12 @@ std::vector<ErrorScale> ChainDynamics::error_scales() const {
 
 void ChainDynamics::positions(const double* y, State& state) const {
     for (const Chains::Pin& pin : chains_.pins) {
-        state.x_m[pin.particle] = pin.position_m.x;
-        state.y_m[pin.particle] = pin.position_m.y;
+        const Vec2 place = pin.position_m + pin.displacement(time_s_);
+        state.x_m[pin.particle] = place.x;
+        state.y_m[pin.particle] = place.y;
     }
     for (const Chain& chain : chains_.list) {
-        walk(chains_, chain, y, [&](std::size_t particle, Vec2 moved, Vec2 /*velocity*/) {
+        walk(chains_, chain, time_s_, y, [&](std::size_t particle, Vec2 moved, Vec2 /*velocity*/) {
             state.x_m[particle] = chain.start_m.x + moved.x;
             state.y_m[particle] = chain.start_m.y + moved.y;
         });
@@ -465,8 +427,13 @@ void ChainDynamics::positions(const double* y, State& state) const {
 }
 
 void ChainDynamics::velocities(const double* y, State& state) const {
+    for (const Chains::Pin& pin : chains_.pins) {
+        const Vec2 velocity = pin.velocity(time_s_);
+        state.vx_m_s[pin.particle] = velocity.x;
+        state.vy_m_s[pin.particle] = velocity.y;
+    }
     for (const Chain& chain : chains_.list) {
-        walk(chains_, chain, y, [&](std::size_t particle, Vec2 /*moved*/, Vec2 velocity) {
+        walk(chains_, chain, time_s_, y, [&](std::size_t particle, Vec2 /*moved*/, Vec2 velocity) {
             state.vx_m_s[particle] = velocity.x;
             state.vy_m_s[particle] = velocity.y;
         });
@@ -476,7 +443,7 @@ void ChainDynamics::velocities(const double* y, State& state) const {
 double ChainDynamics::energy_j(const double* y) const {
     double energy_j = 0.0;
     for (const Chain& chain : chains_.list) {
-        walk(chains_, chain, y, [&](std::size_t particle, Vec2 moved, Vec2 velocity) {
+        walk(chains_, chain, time_s_, y, [&](std::size_t particle, Vec2 moved, Vec2 velocity) {
             energy_j += chains_.mass_kg[particle] *
                         (0.5 * dot(velocity, velocity) + chains_.forces.potential_j_kg(moved));
         });

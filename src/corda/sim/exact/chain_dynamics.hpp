@@ -1,11 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
 
 #include "corda/sim/exact/chain_bending.hpp"
 #include "corda/sim/exact/dop853.hpp"
+#include "corda/sim/forces/forces.hpp"
+#include "corda/sim/forces/time_function.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::sim {
@@ -21,6 +24,8 @@ struct Chain {
     std::size_t ring = 0;  ///< number of particles of a closed rope; its particle 0 follows the last
     bool starts_pinned = true;
     bool ends_pinned = false;
+    std::size_t start_pin = 0;  ///< index of Chains::pins, if the start is pinned
+    std::size_t end_pin = 0;
     std::size_t first_extra = 0;     ///< index of x, y, vx, vy in a state, if the start is not pinned
     Vec2 start_m;                    ///< of the first particle
     Vec2 span_m;                     ///< from the first particle to the last at t = 0
@@ -47,7 +52,9 @@ struct Chain {
 struct Chains {
     struct Pin {
         std::size_t particle = 0;
-        Vec2 position_m;
+        Vec2 position_m;  ///< at t = 0
+        TimeFunction displacement, velocity;
+        Forces forces;  ///< on particles, seen from this pin
     };
 
     Forces forces;
@@ -70,6 +77,17 @@ struct Chains {
     std::vector<double> beyond = {};             ///< share of a free chain's mass that is beyond the link
 
     [[nodiscard]] std::size_t link_count() const { return length_m.size(); }
+    /// The forces seen from the start of a chain, and from its end.
+    [[nodiscard]] const Forces& forces_at_start(const Chain& chain) const {
+        return chain.starts_pinned ? pins[chain.start_pin].forces : forces;
+    }
+    [[nodiscard]] const Forces& forces_at_end(const Chain& chain) const {
+        return chain.ends_pinned ? pins[chain.end_pin].forces : forces;
+    }
+    /// Where the steps of a chain should end next after `time_s`; see Forces::next_key_s.
+    [[nodiscard]] double next_key_s(const Chain& chain, double time_s) const {
+        return std::min(forces_at_start(chain).next_key_s(time_s), forces_at_end(chain).next_key_s(time_s));
+    }
 };
 
 /// The tensions of all chains in a state and what they follow from. One entry per link.
@@ -93,18 +111,6 @@ struct ChainTensions {
 /// `length_m`, those of its velocity by that times the chains' inverse time scale.
 void add_particle(Chains& chains, const System& system, std::size_t particle, double length_m);
 
-/// Throws corda::Refusal if a chain of this length between two pins, the particles `from` and `to` at a
-/// distance of `span_m`, is taut.
-void refuse_taut_between_pins(double length_m, Vec2 span_m, std::size_t from, std::size_t to);
-
-/// Brings the end of a chain between two pins back to its pin, and the end's velocity to 0, by the least
-/// changes of the links' directions and angular velocities.
-void close_between_pins(const Chains& chains, const Chain& chain, double* y);
-
-/// 0 if all links of a chain are in one line, where they do not determine the tensions between two pins;
-/// grows with the square of the angles from it, up to 1/4.
-[[nodiscard]] double spread(const Chains& chains, const Chain& chain, const double* y);
-
 /// The motion of chains of rigid links as a system of ordinary differential equations: sections 1 to 3 and 10
 /// of src/corda/sim/exact/README.md. The tensions solve a tridiagonal system.
 class ChainDynamics final : public Dynamics {
@@ -120,10 +126,8 @@ class ChainDynamics final : public Dynamics {
     /// inverse of its time scale and by themselves.
     [[nodiscard]] std::vector<ErrorScale> error_scales() const override;
     [[nodiscard]] double inverse_timescale_1_s() const override { return chains_.inverse_timescale_1_s; }
-    void set_time(double time_s) override { chains_.forces.set_time(time_s); }
-    [[nodiscard]] double next_key_s(double time_s) const override {
-        return chains_.forces.next_key_s(time_s);
-    }
+    void set_time(double time_s) override;
+    [[nodiscard]] double next_key_s(double time_s) const override;
     void derivative(const double* y, double* slope) override;
     /// Makes directions unit vectors and closes chains between two pins.
     void project(double* y) override;
@@ -136,6 +140,7 @@ class ChainDynamics final : public Dynamics {
 
   private:
     Chains chains_;
+    double time_s_ = 0.0;
     ChainTensions scratch_;
 };
 

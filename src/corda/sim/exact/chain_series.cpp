@@ -9,6 +9,7 @@
 
 #include "corda/core/cancel.hpp"
 #include "corda/core/cpu.hpp"
+#include "corda/sim/exact/chain_closing.hpp"
 #include "corda/sim/exact/series_terms.hpp"
 
 namespace corda::sim {
@@ -216,7 +217,8 @@ const ChainSeries::Code& ChainSeries::code_of(bool is_wide) {
 
 ChainSeries::ChainSeries(const Chains& chains, const Chain& chain, std::size_t order, bool is_wide)
     : code_(&code_of(is_wide)),
-      forces_(&chains.forces),
+      start_forces_(&chains.forces_at_start(chain)),
+      end_forces_(&chains.forces_at_end(chain)),
       first_link_(chain.first_link),
       link_stride_(chains.link_count()),
       first_extra_(chain.first_extra),
@@ -232,10 +234,8 @@ ChainSeries::ChainSeries(const Chains& chains, const Chain& chain, std::size_t o
     a.meeting = kLanes * (a.blocks / 2);
     a.drag_1_s = chains.forces.drag_1_s();
     a.first_inverse_mass_1_kg = chain.inverse_mass_1_kg;
-    const Vec2 uniform_m_s2 = chains.forces.uniform_m_s2();
-    if (chain.starts_pinned) a.start_pull_m_s2.first = uniform_m_s2;
-    if (chain.ends_pinned) a.end_pull_m_s2.first = uniform_m_s2;
-    if (!chain.starts_pinned) a.fall_m_s2.first = uniform_m_s2;
+    (starts_pinned_ ? a.start_pull_m_s2 : a.fall_m_s2).first = start_forces_->uniform_m_s2();
+    if (ends_pinned_) a.end_pull_m_s2.first = end_forces_->uniform_m_s2();
     a.rows.resize(a.blocks * SeriesArrays::kRows * (order + 1));
     double** const arrays[] = {&a.length_m,
                                &a.inverse_length_1_m,
@@ -271,14 +271,14 @@ void ChainSeries::expand(const double* y, double unit_s, double time_s) {
         arrays_.vy[0] = y[first_extra_ + 3];
     }
     arrays_.unit_s = unit_s;
-    if (forces_->depend_on_time()) {
-        SeriesArrays::Pull pull;
+    const auto expand_pull = [&](const Forces& forces, SeriesArrays::Pull& pull) {
+        if (!forces.depend_on_time()) return;
         pull.changes = arrays_.order;
-        forces_->expand(time_s, unit_s, pull.term);
+        forces.expand(time_s, unit_s, pull.term);
         pull.first = pull.term[0];
-        (starts_pinned_ ? arrays_.start_pull_m_s2 : arrays_.fall_m_s2) = pull;
-        if (ends_pinned_) arrays_.end_pull_m_s2 = pull;
-    }
+    };
+    expand_pull(*start_forces_, starts_pinned_ ? arrays_.start_pull_m_s2 : arrays_.fall_m_s2);
+    if (ends_pinned_) expand_pull(*end_forces_, arrays_.end_pull_m_s2);
     code_->expand(arrays_, c, s, omega);
 }
 
@@ -346,12 +346,13 @@ Status ChainPart::step(Mover& mover) {
     // Time and step agree to the last bit, so that no rounding of times adds up.
     double wanted_s = std::min(longest_step_s, largest_s);
     if (mover.chain.ends_pinned) wanted_s = past_line(mover, wanted_s);
-    wanted_s = StepControl::step_before_key(wanted_s, dynamics_.next_key_s(mover.end_s) - mover.end_s);
+    const double key_s = dynamics_.chains().next_key_s(mover.chain, mover.end_s);
+    wanted_s = StepControl::step_before_key(wanted_s, key_s - mover.end_s);
     const double end_s = mover.end_s + wanted_s;
     const double step_s = end_s - mover.end_s;
     if (!(step_s > control.smallest_s) || mover.steps == StepControl::kMaxSteps) return Status::kDiverged;
     mover.series.evaluate(step_s, state_.data());
-    if (mover.chain.ends_pinned) close_between_pins(dynamics_.chains(), mover.chain, state_.data());
+    if (mover.chain.ends_pinned) close_between_pins(dynamics_.chains(), mover.chain, end_s, state_.data());
     mover.start_s = mover.end_s;
     mover.end_s = end_s;
     ++mover.steps;
@@ -396,7 +397,8 @@ Status ChainPart::reach(double time_s, State& state) {
         }
         if (mover.steps == 0) continue;  // output_ is the start
         mover.series.evaluate(time_s - mover.start_s, output_.data());
-        if (mover.chain.ends_pinned) close_between_pins(dynamics_.chains(), mover.chain, output_.data());
+        if (mover.chain.ends_pinned)
+            close_between_pins(dynamics_.chains(), mover.chain, time_s, output_.data());
     }
     dynamics_.set_time(time_s);
     dynamics_.positions(output_.data(), state);

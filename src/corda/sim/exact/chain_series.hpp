@@ -125,7 +125,8 @@ class ChainSeries {
     [[nodiscard]] double sum(const Series& series, double t) const;
 
     const Code* code_;
-    const Forces* forces_;
+    const Forces* start_forces_;  ///< seen from the chain's start
+    const Forces* end_forces_;
     std::size_t first_link_;
     std::size_t link_stride_;  ///< number of links of all chains: distance of c, s and w in a state
     std::size_t first_extra_;

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "corda/core/cancel.hpp"
 #include "corda/core/cpu.hpp"
+#include "corda/sim/exact/chain_closing.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::sim {
@@ -34,13 +34,6 @@ constexpr double kMinLastError = 1e-2;
 constexpr double kMaxTurn = 0.5 * kSmallAngle;
 /// Cost of an iteration per link, in updates of count_work().
 constexpr std::uint64_t kUpdatesPerIteration = 1;
-
-/// Cosines and sines, one per link or joint.
-template <class Number>
-struct Directions {
-    Number* c;
-    Number* s;
-};
 
 /// Turns joints from those of the step's start to those of a stage, times the inverse mass. No arrays
 /// overlap.
@@ -130,7 +123,6 @@ RadauChain make_radau_chain(ChainDynamics& dynamics, const System& system, const
     r.first_link = chain.first_link;
     r.link_stride = chains.link_count();
     r.ends_pinned = chain.ends_pinned;
-    r.pull_m_s2.fill(chains.forces.uniform_m_s2());
     r.drag_1_s = chains.forces.drag_1_s();
     r.control = step_control(chain.inverse_timescale_1_s, tolerance);
     r.tolerance_m = std::max(kShareOfAnImplicitStep * tolerance, kMinShareOfAnImplicitStep) * chain.length_m;
@@ -190,9 +182,9 @@ void predict(RadauChain& r) {
 
 /// The pull that a pin withholds from link `i` at a stage: that at the end enters the other way round.
 Pull pull_of_pin(const RadauChain& r, Index i, Index stage) {
-    if (i == 1) return pull_of(r.pull_m_s2[stage], r.c[1], r.s[1], r.turn[stage][1]);
+    if (i == 1) return pull_of(r.start_pull_m_s2[stage], r.c[1], r.s[1], r.turn[stage][1]);
     if (i < r.links || !r.ends_pinned) return {};
-    return pull_of(-1.0 * r.pull_m_s2[stage], r.c[i], r.s[i], r.turn[stage][i]);
+    return pull_of(-1.0 * r.end_pull_m_s2[stage], r.c[i], r.s[i], r.turn[stage][i]);
 }
 
 void find_residuals(RadauChain& r) {
@@ -356,7 +348,7 @@ void close(RadauChain& r, const Chains& chains, const Chain& chain, double* y) {
     std::copy_n(&r.c[1], r.links, c);
     std::copy_n(&r.s[1], r.links, s);
     std::copy_n(&r.omega[1], r.links, omega);
-    close_between_pins(chains, chain, y);
+    close_between_pins(chains, chain, r.end_s + r.step_s, y);
     for (Index i = 1; i <= r.links; ++i)  // small angles
         r.turned[i] += r.c[i] * s[i - 1] - r.s[i] * c[i - 1];
     std::copy_n(c, r.links, &r.c[1]);
@@ -414,12 +406,17 @@ double next_factor(RadauChain& r) {
 Status step(RadauChain& r, const Chains& chains, const Chain& chain, double* y) {
     double most = std::numeric_limits<double>::infinity();  // no growth after a rejected step
     for (;;) {
-        r.step_s = std::min(r.step_s, chains.forces.next_key_s(r.end_s) - r.end_s);
-        if (!(r.step_s > r.control.smallest_s) || r.steps == StepControl::kMaxSteps) return Status::kDiverged;
+        r.step_s = std::min(r.step_s, chains.next_key_s(chain, r.end_s) - r.end_s);
+        if (!(r.step_s > r.control.smallest_s) || is_reached(r.end_s + r.step_s, r.end_s) ||
+            r.steps == StepControl::kMaxSteps)
+            return Status::kDiverged;
         // Time and step agree to the last bit, so that no rounding of times adds up.
         r.step_s = (r.end_s + r.step_s) - r.end_s;
-        for (Index k = 0; k < RadauChain::kStages && chains.forces.depend_on_time(); ++k)
-            r.pull_m_s2[k] = chains.forces.uniform_at(r.end_s + kTime[k] * r.step_s);
+        for (Index k = 0; k < RadauChain::kStages; ++k) {
+            const double time_s = r.end_s + kTime[k] * r.step_s;
+            r.start_pull_m_s2[k] = chains.forces_at_start(chain).uniform_at(time_s);
+            r.end_pull_m_s2[k] = chains.forces_at_end(chain).uniform_at(time_s);
+        }
         const double factor = next_factor(r);
         if (factor > 0.0) {
             accept(r, chains, chain, y);
@@ -479,7 +476,7 @@ Status ImplicitPart::reach(double time_s, State& state) {
         }
         if (chain.steps == 0) continue;
         interpolate(chain, time_s, output_.data());
-        if (chain.ends_pinned) close_between_pins(chains, chains.list[i], output_.data());
+        if (chain.ends_pinned) close_between_pins(chains, chains.list[i], time_s, output_.data());
     }
     dynamics_.set_time(time_s);
     dynamics_.positions(output_.data(), state);
@@ -487,14 +484,15 @@ Status ImplicitPart::reach(double time_s, State& state) {
 }
 
 std::uint64_t ImplicitPart::steps() const {
-    return std::accumulate(chains_.begin(), chains_.end(), std::uint64_t{0},
-                           [](std::uint64_t sum, const RadauChain& chain) { return sum + chain.steps; });
+    std::uint64_t sum = 0;
+    for (const RadauChain& chain : chains_) sum += chain.steps;
+    return sum;
 }
 
 std::uint64_t ImplicitPart::rejected_steps() const {
-    return std::accumulate(
-        chains_.begin(), chains_.end(), std::uint64_t{0},
-        [](std::uint64_t sum, const RadauChain& chain) { return sum + chain.rejected_steps; });
+    std::uint64_t sum = 0;
+    for (const RadauChain& chain : chains_) sum += chain.rejected_steps;
+    return sum;
 }
 
 }  // namespace corda::sim

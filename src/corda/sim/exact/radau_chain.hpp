@@ -30,7 +30,8 @@ struct RadauChain {
     std::size_t first_link = 0;
     std::size_t link_stride = 0;
     bool ends_pinned = false;
-    std::array<Vec2, kStages> pull_m_s2 = {};  ///< the uniform acceleration at the stages
+    std::array<Vec2, kStages> start_pull_m_s2 = {};  ///< the uniform acceleration at the stages, seen
+    std::array<Vec2, kStages> end_pull_m_s2 = {};    ///< from the first pin and from the last
     double drag_1_s = 0.0;
     StepControl control = {};
     double tolerance_m = 0.0;  ///< of a step

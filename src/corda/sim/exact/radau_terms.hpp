@@ -40,6 +40,13 @@ inline constexpr double kErrorWeights[3] = {-10.048809399827415562, 1.3821427331
 template <class Number>
 using Block = std::array<Number, 4>;
 
+/// Cosines and sines, one per link or joint.
+template <class Number>
+struct Directions {
+    Number* c;
+    Number* s;
+};
+
 /// A row of the factorised matrix.
 template <class Number>
 struct Pivot {

@@ -11,7 +11,8 @@
 
 namespace corda::sim {
 
-/// A key counts as reached from a few roundings before it on, because times are sums of steps.
+/// Times count as one from a few roundings on, because they are sums of steps: whether `key_s` is not after
+/// `time_s`.
 [[nodiscard]] inline bool is_reached(double key_s, double time_s) {
     constexpr double kFewRoundings = 4.0 * std::numeric_limits<double>::epsilon();
     return key_s <= time_s + kFewRoundings * std::abs(time_s);

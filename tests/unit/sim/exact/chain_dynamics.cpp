@@ -1,4 +1,5 @@
 #include "corda/sim/exact/chain_dynamics.hpp"
+#include "corda/sim/exact/chain_closing.hpp"
 
 #include <gtest/gtest.h>
 
@@ -115,7 +116,7 @@ TEST(ChainDynamics, ClosesAChainThatHasDriftedFromItsSecondPin) {
     y[2 * links + 4] += 1e-5;
     EXPECT_GT(gap(0, false), 1e-6);
     EXPECT_GT(gap(0, true), 1e-6);
-    close_between_pins(dynamics.chains(), dynamics.chains().list.front(), y.data());
+    close_between_pins(dynamics.chains(), dynamics.chains().list.front(), 0.0, y.data());
     EXPECT_LT(gap(0, false), 1e-15);
     EXPECT_LT(gap(0, true), 1e-10);  // measured 1.1e-11: one step with the matrix from before
     for (std::size_t i = 0; i < links; ++i) {

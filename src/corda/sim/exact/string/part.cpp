@@ -8,6 +8,7 @@
 
 #include "corda/core/cancel.hpp"
 #include "corda/sim/defs.hpp"
+#include "corda/sim/exact/chain_closing.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::sim {
