@@ -59,7 +59,7 @@ Simulation::Simulation(System system, const WorldDef& world, std::span<const Met
     load_meter_ = std::make_unique<sim::LoadMeter>(system_);
     state_ = {0.0, system_.x_m, system_.y_m};
     next_ = state_;
-    conserves_energy_ = solver_->conserves_energy();
+    conserves_energy_ = solver_->conserves_energy() && system_.moves.empty();  // supports do work
     initial_energy_j_ = solver_->energy_j();
     energy_scale_j_ = solver_->energy_scale_j();
     if (energy_scale_j_ == 0.0) energy_scale_j_ = std::abs(initial_energy_j_);
