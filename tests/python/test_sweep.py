@@ -373,6 +373,24 @@ class Chains:
         return np.cumsum(self.link * np.stack([np.sin(angle), -np.cos(angle)], axis=-1), axis=2)
 
 
+def test_the_arms_of_a_double_pendulum_vary_one_by_one(tmp_path):
+    scene = ROPE.replace("links = 6, length = 1.0, angle_deg = 60.0", "lengths = [1.0, 0.5], angles_deg = [90.0, 0.0]")
+    path = write(tmp_path, scene, """samples = 3
+[vary]
+"rope[0].hang.angles_deg[1]" = { uniform = [-180.0, 180.0] }
+"rope[0].hang.rates_deg_s" = { uniform = [[-90.0, 0.0], [90.0, 360.0]] }
+[output]
+pictures = "none"
+""")
+    for sample in corda.Sweep(path):
+        (end, rates) = (sample["parameters"][key] for key in ("rope[0].hang.angles_deg[1]", "rope[0].hang.rates_deg_s"))
+        (first, second), (end, *_) = np.radians(rates), np.radians([end])
+        along = 0.5 * np.array([np.sin(end), -np.cos(end)])
+        across = 0.5 * second * np.array([np.cos(end), np.sin(end)])
+        assert np.abs(sample["positions"][0] - [[0, 0], [1, 0], [1, 0] + along]).max() < 1e-15
+        assert np.abs(sample["velocities"][0] - [[0, 0], [0, first], [0, first] + across]).max() < 1e-14
+
+
 def test_the_error_estimate_holds(tmp_path):
     path = write(tmp_path, ROPE.replace("0.5", "2.0").replace("30000/1001", "30"), """samples = 200
 seed = 11

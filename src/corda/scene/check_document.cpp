@@ -50,9 +50,11 @@ constexpr Wish kWishes[] = {
      "payload of a rope is the mass added to its last particle, in kg"},
     {" density mass_per_length linear_density total_mass ", "mass is that of one particle, in kg"},
     {" theta phi angle angles angle_rad angle0 initial_angle ",
-     "hang.angle_deg of a rope is its angle from straight down, in degrees"},
+     "hang.angle_deg of a rope is its angle from straight down, in degrees, hang.angles_deg those of its "
+     "links"},
     {" omega angular_velocity initial_velocity v0 ",
-     "velocity of a rope or net is that of its particles at the start, in m/s"},
+     "velocity of a rope or net is that of its particles at the start, in m/s; hang.rates_deg_s of a rope of "
+     "arms is that of its links"},
     {" thickness diameter radius line_width linewidth width ",
      "width_px of a rope or net is its width in pixels"},
     {" particle_count segments nodes n_links num_links link_count n ",

@@ -30,12 +30,21 @@ toml::table turned_table(const toml::table& rope, const RopeDef& def, double ang
     table.insert_or_assign("merged", true);
     const std::size_t pin = def.pinned.empty() ? 0 : *std::ranges::min_element(def.pinned);
     const Direction by = direction_of(angle_deg);
-    if (def.velocity_m_s != std::vector<Vec2>(def.velocity_m_s.size())) {
+    toml::table* const hang = pin == 0 ? table["hang"].as_table() : nullptr;
+    const bool has_rates = hang != nullptr && hang->contains("rates_deg_s");  // they turn with the angles
+    if (!has_rates && def.velocity_m_s != std::vector<Vec2>(def.velocity_m_s.size())) {
         toml::array velocities;
         for (const Vec2 v : def.velocity_m_s) velocities.push_back(pair_of(turned(v, by)));
         table.insert_or_assign("velocity", std::move(velocities));
     }
-    if (toml::table* const hang = table["hang"].as_table(); hang != nullptr && pin == 0) {
+    if (hang != nullptr && hang->contains("angles_deg")) {
+        toml::array angles;
+        for (const toml::node& given : *hang->get_as<toml::array>("angles_deg"))
+            angles.push_back(number_of(given) + angle_deg);
+        hang->insert_or_assign("angles_deg", std::move(angles));
+        return table;
+    }
+    if (hang != nullptr) {
         const toml::node* const given = hang->get("angle_deg");
         hang->insert_or_assign("angle_deg", (given == nullptr ? 0.0 : number_of(*given)) + angle_deg);
         return table;

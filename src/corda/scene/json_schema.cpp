@@ -19,7 +19,9 @@ struct Alternatives {
     std::vector<std::string_view> keys;
 };
 std::vector<Alternatives> alternatives() {
-    return {{"rope", {"line", "hang", "points"}}, {"net", {"grid", "points"}}};
+    return {{"rope", {"line", "hang", "points"}},
+            {"rope.hang", {"length", "lengths"}},
+            {"net", {"grid", "points"}}};
 }
 
 Json number_json(double value) {

@@ -172,7 +172,9 @@ std::vector<Key> rope_shapes() {
          "line = { particles = 40, from = [0.0, 0.0], step = [0.0, -1.0] }",
          "exactly one of line, hang and points"},
         {"rope", "hang", of(Kind::kTable), "", none(),
-         "hang = { links = 20, length = 1.0, angle_deg = 45.0 }"},
+         "hang = { links = 20, length = 1.0, angle_deg = 45.0 }",
+         "or one of arms: hang = { lengths = [1.0, 0.5], angles_deg = [90.0, 0.0], rates_deg_s = [0.0, "
+         "360.0] }"},
     };
 }
 
@@ -215,7 +217,20 @@ Binding hang_particles() {
                                  [](const HangDef&) { return std::string(); });
 }
 
+/// Written as velocities.
+Binding arm_rates() {
+    return custom_field<ArmsDef>(
+        [](const Value& value, ArmsDef& def) { def.rates_deg_s = value.as<std::vector<double>>(); },
+        [](const ArmsDef&) { return std::string(); });
+}
+
 std::vector<Key> rope_shape_keys() {
+    const auto per_link = [](const Range& range) {
+        Type type = list(Kind::kNumber, 1);
+        type.range = range;
+        type.list = "a list with one per link";
+        return type;
+    };
     const Type from = pair("[x, y]", kCoordinate);
     const std::string_view first = "the position of the first particle";
     return {
@@ -232,11 +247,19 @@ std::vector<Key> rope_shape_keys() {
          otherwise("particles - 1", field(&HangDef::links)), "the number of links"},
         {"rope.hang", "particles", integer(2, kMaxParticles), "", otherwise("links + 1", hang_particles()),
          "the number of particles", "exactly one of links and particles"},
-        {"rope.hang", "length", number(kAbove0), "m", required(field(&HangDef::length_m)),
-         "the length of the whole rope"},
+        {"rope.hang", "length", number(kAbove0), "m",
+         otherwise("the sum of lengths", field(&HangDef::length_m)), "the length of the whole rope"},
         {"rope.hang", "angle_deg", number(), "degrees", field(&HangDef::angle_deg),
          "the angle from straight down, positive to +x"},
-        {"rope.hang", "from", from, "m", field(&HangDef::from_m), first},
+        {"rope.hang", "lengths", per_link(kLength), "m",
+         otherwise("length / links", field(&ArmsDef::lengths_m)), "the length of each link",
+         "in place of links, particles, length and angle_deg"},
+        {"rope.hang", "angles_deg", per_link(kAny), "degrees",
+         otherwise("required with lengths", field(&ArmsDef::angles_deg)),
+         "the angle of each link from straight down, positive to +x"},
+        {"rope.hang", "rates_deg_s", per_link(kAny), "degrees/s", otherwise("at rest", arm_rates()),
+         "the angular velocity of each link at the start", "with lengths, and in place of velocity"},
+        {"rope.hang", "from", from, "m", either(field(&HangDef::from_m), field(&ArmsDef::from_m)), first},
     };
 }
 

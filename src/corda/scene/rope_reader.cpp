@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "corda/core/direction.hpp"
 #include "corda/scene/field.hpp"
@@ -20,12 +21,14 @@ double distance_m(Vec2 a, Vec2 b) {
     return sim::length(b.x - a.x, b.y - a.y);
 }
 
-/// A straight rope lies inside the limits if both of its ends do.
-bool check_last_point(const TableReader& shape, const RopeDef& def) {
-    const Vec2 last = def.origin_m + def.points_m.back();
-    if (std::max(std::abs(last.x), std::abs(last.y)) <= Limits::kCoordinateMetres) return true;
-    shape.add_problem(fmt::format("the last particle is at [{}, {}], beyond the limit of {:g} m", last.x,
-                                  last.y, Limits::kCoordinateMetres),
+/// Whether particle `i` lies inside the limits; a straight rope does if its last one does.
+bool check_point(const TableReader& shape, const RopeDef& def, std::size_t i) {
+    const Vec2 at = def.origin_m + def.points_m[i];
+    if (std::max(std::abs(at.x), std::abs(at.y)) <= Limits::kCoordinateMetres) return true;
+    const std::string which =
+        i + 1 == def.points_m.size() ? "the last particle" : fmt::format("particle {}", i);
+    shape.add_problem(fmt::format("{} is at [{}, {}], beyond the limit of {:g} m", which, at.x, at.y,
+                                  Limits::kCoordinateMetres),
                       "make the rope shorter");
     return false;
 }
@@ -42,10 +45,42 @@ bool read_line(const TableReader& table, RopeDef& def, ShapeDef& shape) {
     }
     place(line, def);
     shape = line;
-    return check_last_point(table, def);
+    return check_point(table, def, def.points_m.size() - 1);
+}
+
+/// Whether a list of the arms has one number per link.
+bool has_one_per_link(const TableReader& table, std::string_view key, std::size_t links) {
+    const auto list = table.find(key);
+    if (!list || list->size() == links) return true;
+    list->add_problem(fmt::format("{} values for {} lengths", list->size(), links), "give one per link");
+    return false;
+}
+
+bool read_arms(const TableReader& rope, const TableReader& table, RopeDef& def, ShapeDef& shape) {
+    for (const char* const key : {"links", "particles", "length", "angle_deg"}) {
+        if (const auto other = table.find(key))
+            other->add_problem(fmt::format("{} is of a straight rope, and lengths of one of arms", key),
+                               "keep one of them");
+    }
+    if (!table.is_given("angles_deg")) table.add_missing("angles_deg");
+    ArmsDef arms;
+    read_fields(table, arms);
+    const bool has_rates = table.is_given("rates_deg_s");
+    if (const auto velocity = rope.find("velocity"); velocity && has_rates)
+        velocity->add_problem("hang.rates_deg_s gives the velocities, too", "keep one of them");
+    const bool have_sizes = has_one_per_link(table, "angles_deg", arms.lengths_m.size()) &&
+                            has_one_per_link(table, "rates_deg_s", arms.lengths_m.size());
+    if (!have_sizes || !table.has("angles_deg") || table.has("rates_deg_s") != has_rates) return false;
+    place(arms, def);
+    for (std::size_t i = 0; i < def.points_m.size(); ++i)
+        if (!check_point(table, def, i)) return false;
+    if (has_rates) def.velocity_m_s = velocities_m_s(arms);
+    shape = arms;
+    return true;
 }
 
 bool read_hang(const TableReader& table, RopeDef& def, ShapeDef& shape) {
+    if (!table.is_given("length")) table.add_missing("length");
     HangDef hang;
     read_fields(table, hang);
     const auto length = table.find("length");
@@ -58,7 +93,7 @@ bool read_hang(const TableReader& table, RopeDef& def, ShapeDef& shape) {
     }
     place(hang, def);
     shape = hang;
-    return check_last_point(table, def);
+    return check_point(table, def, def.points_m.size() - 1);
 }
 
 /// Adds the problem of a bar without length between points `first` < `last`, `stride` links apart.
@@ -109,6 +144,17 @@ bool has_one_shape(const TableReader& rope) {
     return given.size() == 1;
 }
 
+bool refuses_arms_without_lengths(const TableReader& hang) {
+    for (const char* const key : {"angles_deg", "rates_deg_s"}) {
+        const auto list = hang.find(key);
+        if (!list) continue;
+        list->add_problem(fmt::format("{} is of a rope of arms, which has lengths", key),
+                          "give lengths, one per link, in place of links and length");
+        return true;
+    }
+    return false;
+}
+
 /// The number of particles; 0 if it is unknown.
 std::int64_t read_particle_count(const TableReader& rope) {
     std::int64_t particles = 0;
@@ -116,6 +162,11 @@ std::int64_t read_particle_count(const TableReader& rope) {
     if (particles > 0) return particles;
     if (rope.has("hang")) {
         const TableReader hang = rope.table("hang");
+        if (hang.is_given("lengths")) {
+            const auto lengths = hang.find("lengths");
+            return lengths ? static_cast<std::int64_t>(lengths->size()) + 1 : 0;
+        }
+        if (refuses_arms_without_lengths(hang)) return 0;
         std::int64_t links = 0;
         hang.read("links", links);
         hang.read("particles", particles);
@@ -202,7 +253,10 @@ void read_link_lengths(const TableReader& rope, RopeDef& def) {
 bool read_rope_shape(const TableReader& rope, RopeDef& def, ShapeDef& shape) {
     refuse_origin(rope);
     if (rope.has("line")) return read_line(rope.table("line"), def, shape);
-    if (rope.has("hang")) return read_hang(rope.table("hang"), def, shape);
+    if (rope.has("hang")) {
+        const TableReader hang = rope.table("hang");
+        return hang.is_given("lengths") ? read_arms(rope, hang, def, shape) : read_hang(hang, def, shape);
+    }
     read_points(rope, def.origin_m, def.points_m);
     return check_short_bars(*rope.find("points"), def, rope.is_given("link_length"));
 }
@@ -262,6 +316,29 @@ void place(const HangDef& hang, RopeDef& rope) {
         // 0 + and 0 - give the zeros of a straight rope one sign.
         rope.points_m.push_back({0.0 + along_m * direction.sine, 0.0 - along_m * direction.cosine});
     }
+}
+
+void place(const ArmsDef& arms, RopeDef& rope) {
+    rope.origin_m = arms.from_m;
+    rope.points_m.assign(1, {});
+    for (std::size_t k = 0; k < arms.lengths_m.size(); ++k) {
+        const Direction direction = direction_of(arms.angles_deg[k]);
+        const double length_m = arms.lengths_m[k];
+        rope.points_m.push_back(rope.points_m.back() +
+                                Vec2{0.0 + length_m * direction.sine, 0.0 - length_m * direction.cosine});
+    }
+}
+
+std::vector<Vec2> velocities_m_s(const ArmsDef& arms) {
+    constexpr double kRadians = std::numbers::pi / 180.0;
+    std::vector<Vec2> velocities(1);
+    for (std::size_t k = 0; k < arms.lengths_m.size(); ++k) {
+        const Direction direction = direction_of(arms.angles_deg[k]);
+        const double speed_m_s = arms.lengths_m[k] * (kRadians * arms.rates_deg_s[k]);
+        velocities.push_back(velocities.back() +
+                             Vec2{0.0 + speed_m_s * direction.cosine, 0.0 + speed_m_s * direction.sine});
+    }
+    return velocities;
 }
 
 }  // namespace corda

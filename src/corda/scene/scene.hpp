@@ -79,6 +79,17 @@ struct HangDef {
     friend bool operator==(const HangDef&, const HangDef&) = default;
 };
 
+/// A rope of links that each have a length and an angle, such as a double pendulum: key `hang` with
+/// `lengths`. Its rates are the rope's velocities, so that they are written and compared as these.
+struct ArmsDef {
+    std::vector<double> lengths_m;      ///< one per link, at least one
+    std::vector<double> angles_deg;     ///< one per link, from straight down, positive to +x
+    std::vector<double> rates_deg_s{};  ///< one per link, or empty: at rest
+    Vec2 from_m;                        ///< the first particle
+
+    friend bool operator==(const ArmsDef&, const ArmsDef&) = default;
+};
+
 /// A net of rows, particle row * columns + column with row 0 on top: key `grid`.
 struct GridDef {
     int columns = 0;
@@ -96,12 +107,14 @@ struct CopiesDef {
     double angle_deg = 0.0;  ///< finite
 };
 
-using ShapeDef = std::variant<std::monostate, LineDef, HangDef, GridDef>;
+using ShapeDef = std::variant<std::monostate, LineDef, HangDef, ArmsDef, GridDef>;
 
-/// The particles of a straight rope, into `rope.origin_m` and `rope.points_m`. Requires a shape in its
-/// ranges.
+/// The particles of a rope, into `rope.origin_m` and `rope.points_m`. Requires a shape in its ranges.
 void place(const LineDef& line, RopeDef& rope);
 void place(const HangDef& hang, RopeDef& rope);
+void place(const ArmsDef& arms, RopeDef& rope);
+/// The velocities of all particles by the rates of the links, the first one at rest.
+[[nodiscard]] std::vector<Vec2> velocities_m_s(const ArmsDef& arms);
 /// The particles and the bars of a grid, into `net.origin_m`, `net.points_m` and `net.bars`.
 void place(const GridDef& grid, NetDef& net);
 

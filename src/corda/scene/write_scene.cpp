@@ -114,6 +114,8 @@ Table rope_table(const RopeDef& rope, const BodyStyleDef& style, const ShapeDef&
     if (!rope.closed) {
         if (const auto* hang = std::get_if<HangDef>(&shape); hang != nullptr && gives(*hang, rope))
             return with("hang", *hang);
+        if (const auto* arms = std::get_if<ArmsDef>(&shape); arms != nullptr && gives(*arms, rope))
+            return with("hang", *arms);
         if (const auto line = line_of(rope); line && gives(*line, rope)) return with("line", *line);
     }
     Table table = table_of("rope", path, {part(rope), part(style)});

@@ -37,6 +37,18 @@ TEST(SceneCopies, OfAHangingRopeHangAtTheirAngles) {
     ASSERT_EQ(again.ropes.size(), 4U);
 }
 
+TEST(SceneCopies, OfArmsHangAtTheirAnglesWithTheirRates) {
+    const Scene scene = with_copies(
+        "hang = { lengths = [1.0, 2.0], angles_deg = [80, -10], rates_deg_s = [360, 0] }\n"
+        "copies = { count = 2, angle_deg = 10.0 }\n");
+    ASSERT_EQ(scene.ropes.size(), 2U);
+    RopeDef expected;
+    const ArmsDef turned{{1.0, 2.0}, {90.0, 0.0}, {360.0, 0.0}, {}};
+    place(turned, expected);
+    EXPECT_EQ(scene.ropes[1].points_m, expected.points_m);
+    EXPECT_EQ(scene.ropes[1].velocity_m_s, velocities_m_s(turned));
+}
+
 TEST(SceneCopies, OfPointsAreTurnedAboutTheirFirstPinWithTheirVelocities) {
     const Scene scene = with_copies(
         "points = [[0.0, 2.0], [0.0, 1.0], [0.0, 0.0]]\npinned = [1]\nvelocity = [1.0, 0.0]\n"

@@ -99,6 +99,15 @@ hang = { links = 2, length = 2e9 } | 3:8 rope[0].hang | beyond the limit of 1e+0
 hang = { links = 2, length = 1, angle_deg = inf } | 3:45 rope[0].hang.angle_deg | inf is not a finite number
 hang = { length = 1 } | 3:8 rope[0].hang | give links, the number of links, or particles | { => { links = 2, ; { => { particles = 2,
 hang = { links = 2, particles = 3, length = 1 } | 3:8 rope[0].hang | links and particles are both given; keep one of them | links = 2, =>
+hang = { lengths = [1, 2], angles_deg = [9] } | 3:41 rope[0].hang.angles_deg | 1 values for 2 lengths; give one per link | [9] => [9, 8] ; [1, 2] => [1]
+hang = { lengths = [1], angles_deg = [9], rates_deg_s = [1, 2] } | 3:57 rope[0].hang.rates_deg_s | 2 values for 1 lengths; give one per link | [1, 2] => [1]
+hang = { lengths = [1, 2] } | 3:8 rope[0].hang.angles_deg | missing; give the angle of each link from straight down, positive to +x in degrees | { => { angles_deg = [3, 4],
+hang = { lengths = [1, -2], angles_deg = [9, 9] } | 3:24 rope[0].hang.lengths[1] | -2 is not >= 1e-12
+hang = { lengths = [1], angles_deg = [9], links = 1 } | 3:51 rope[0].hang.links | links is of a straight rope, and lengths of one of arms; keep one of them | , links = 1 =>
+hang = { angles_deg = [9], links = 1, length = 1 } | 3:23 rope[0].hang.angles_deg | angles_deg is of a rope of arms, which has lengths; give lengths, one per link, in place of links and length | links = 1, length = 1 => lengths = [1]
+hang = { lengths = [1, 2e9], angles_deg = [9, 90] } | 3:8 rope[0].hang | the last particle is at [2000000000.1564345, -0.9876883405951378], beyond the limit of 1e+09 m; make the rope shorter | 2e9 => 9e8
+hang = { lengths = [2e9, 2e9], angles_deg = [90, -90] } | 3:8 rope[0].hang | particle 1 is at [2000000000, 0], beyond the limit
+hang = { lengths = [1], angles_deg = [9], rates_deg_s = [3] }\nvelocity = [1, 0] | 4:12 rope[0].velocity | hang.rates_deg_s gives the velocities, too; keep one of them | , rates_deg_s = [3] => ; velocity = [1, 0] =>
 hang = { particles = 1, length = 1 } | 3:22 rope[0].hang.particles | 1 is not >= 2
 hang = { links = 2, length = 1 }\nlabel = "\\U0001f9f6" | 4:9 rope[0].label | DejaVu Sans has no U+1F9F6; name a font that has all characters (overlay.font = "file.ttf"), or leave these characters out
 hang = { links = 3, length = 1 }\nclosed = true | 4:10 rope[0].closed | give points

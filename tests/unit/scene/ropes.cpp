@@ -79,6 +79,45 @@ TEST(SceneHang, HasItsDefaults) {
     EXPECT_THAT(rope.points_m, ElementsAre(Vec2{0, 0}, Vec2{0, -3}));
 }
 
+/// A rope of arms; `more` stands after its angles.
+std::string arms(const std::string& lengths, const std::string& angles_deg, const std::string& more = "") {
+    return "schema = 1\n[[rope]]\nhang = { lengths = " + lengths + ", angles_deg = " + angles_deg + more +
+           " }\n";
+}
+
+TEST(SceneArms, FollowTheirOwnAnglesAndTurnByTheirOwnRates) {
+    const auto rope =
+        rope_of(arms("[1.0, 0.5, 2.0]", "[90, -30, 180]", ", from = [5, 7], rates_deg_s = [60, 0, -90]"));
+    EXPECT_EQ(rope.origin_m, (Vec2{5, 7}));
+    const std::vector<Vec2> points_m{
+        {0, 0}, {1, 0}, {0.75, -std::sqrt(3.0) / 4}, {0.75, 2 - std::sqrt(3.0) / 4}};
+    const double pi = std::numbers::pi;
+    const std::vector<Vec2> velocity_m_s{{0, 0}, {0, pi / 3}, {0, pi / 3}, {pi, pi / 3}};
+    ASSERT_EQ(rope.points_m.size(), 4U);
+    ASSERT_EQ(rope.velocity_m_s.size(), 4U);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_LT(std::hypot(rope.points_m[i].x - points_m[i].x, rope.points_m[i].y - points_m[i].y), 1e-15)
+            << i;
+        const Vec2 off = rope.velocity_m_s[i] - velocity_m_s[i];
+        EXPECT_LT(std::hypot(off.x, off.y), 1e-15) << i;  // measured 4.4e-16
+    }
+}
+
+TEST(SceneArms, OfOneAngleAreAStraightRope) {
+    EXPECT_EQ(rope_of(arms("[0.5, 0.5, 0.5, 0.5]", "[90, 90, 90, 90]")).points_m, hang("90").points_m);
+    EXPECT_THAT(rope_of(arms("[0.5]", "[30]")).velocity_m_s, ElementsAre(Vec2{}, Vec2{}));
+}
+
+TEST(SceneArms, TakeSettingsOfOneEntry) {
+    const std::string text = arms("[1, 2]", "[0, 0]", ", rates_deg_s = [0, 0]");
+    const auto rope =
+        parse_scene(text, "a", {"rope[0].hang.angles_deg[1]=90", "rope[0].hang.rates_deg_s[1]=360"})
+            .ropes.at(0);
+    EXPECT_THAT(rope.points_m, ElementsAre(Vec2{0, 0}, Vec2{0, -1}, Vec2{2, -1}));
+    EXPECT_EQ(rope.velocity_m_s[2].x, 0.0);
+    EXPECT_NEAR(rope.velocity_m_s[2].y, 4 * std::numbers::pi, 1e-14);
+}
+
 TEST(ScenePoints, AreRelativeToTheFirst) {
     const auto rope = rope_of("schema = 1\n[[rope]]\npoints = [[5, 7], [5.5, 6], [8, 8]]\n");
     EXPECT_EQ(rope.origin_m, (Vec2{5, 7}));

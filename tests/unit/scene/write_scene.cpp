@@ -52,6 +52,8 @@ TEST(WriteScene, EveryKeyComesBack) {
                               "cut = [{ link = -1, t = 1e-3 }]\n"),
              scene::grid_with("release = [{ pin = [2, 0], t = 2 }]\ncut = [{ link = 3, t = 1 }]\n"),
              scene::square_with("origin = [0.1, 1e8]\nbending = 1e-3\n"),
+             std::string("schema = 1\n[[rope]]\nhang = { lengths = [1, 0.7], angles_deg = [120, -30], "
+                         "rates_deg_s = [10, 0.1], from = [1, 2] }\n"),
              scene::grid_with(
                  "compliance = 1e-4\nstring = true\n[solver]\nmethod = \"relaxation\"\nreach = 3\n"),
              scene::graph_with("[[0, 1], [1, 2], [2, 3]]", "pinned = []\n"),
