@@ -40,6 +40,9 @@ Film::Film(const Scene& scene, const FilmDef& def) {
     }
 }
 
+Film::Film(Scene scene, GivenMotion motion, const FilmDef& def)
+    : Film((give_motion(scene, std::move(motion)), scene), def) {}
+
 Film::Film(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 
 const Scene& Film::scene() const {

@@ -12,6 +12,7 @@
 #include "corda/core/image.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/scene/scene.hpp"
+#include "corda/sim/given_motion.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/view/defs.hpp"
 
@@ -49,6 +50,17 @@ struct Look;
 struct Motion;
 }  // namespace film
 
+/// Gives a scene its motion in place of a simulated one: positions that another simulation or a measurement
+/// has found. A film of it then draws them, with the bodies, the style and the camera of the scene; forces,
+/// velocities, `moves` and methods of the scene change nothing, pins let go lose their supports, and cut
+/// links are gone. Unless something else gives world.duration, the film ends at the last time.
+void give_motion(Scene& scene, GivenMotion motion);
+
+/// Reads positions: CSV as `corda simulate` writes it, or an .npz of NumPy with the arrays `times` (n) and
+/// `positions` (n, particles, 2) of float64. Throws corda::Error: kIo if the file cannot be read, kUsage with
+/// its place for what it lacks.
+[[nodiscard]] GivenMotion read_positions(const std::string& path);
+
 /// A scene as pictures: plans a method, simulates the motion, fits the camera to it, and draws frames in any
 /// order. The same scene gives the same bytes.
 ///
@@ -63,6 +75,8 @@ class Film {
     /// the scene, kIo if a large motion does not fit on the disk, kInterrupted if cancelled or if on_progress
     /// returns false.
     explicit Film(const Scene& scene, const FilmDef& def = {});
+    /// The film of a scene whose motion is given: see give_motion().
+    Film(Scene scene, GivenMotion motion, const FilmDef& def = {});
 
     [[nodiscard]] const Scene& scene() const;
     [[nodiscard]] const System& system() const;

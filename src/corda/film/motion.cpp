@@ -10,6 +10,7 @@
 #include "corda/core/cancel.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/text.hpp"
+#include "corda/film/given.hpp"
 #include "corda/film/live_plots.hpp"
 #include "corda/film/look.hpp"
 #include "corda/film/motion_input.hpp"
@@ -47,14 +48,36 @@ Timeline timeline_of(const Scene& scene, const System& system, const RecordDef& 
     return {video.scene_rate(), last_frame, std::move(times_s), video.fps.interval_s()};
 }
 
+/// Reports how many times are recorded. The motion and `on_progress` must outlive the scope.
+CancelScope report_recorded(const Motion& motion, const OnProgress& on_progress) {
+    return CancelScope([&] {
+        report_progress(on_progress, static_cast<std::int64_t>(motion.recording->size()),
+                        static_cast<std::int64_t>(motion.timeline->size()));
+    });
+}
+
+/// Records positions that are given.
+Plan record_given(Motion& motion, const OnProgress& on_progress) {
+    const CancelScope progress = report_recorded(motion, on_progress);
+    sim::Recording& recording = *motion.recording;
+    while (recording.size() < motion.timeline->size()) {
+        count_work(motion.system.particle_count());
+        const double time_s = motion.timeline->time_s(recording.size());
+        const State state = given_state(*motion.given, time_s, motion.system, recording.fields());
+        recording.add(motion.system, state, given_figures(motion.system, state),
+                      motion.timeline->is_frame(recording.size()));
+    }
+    Plan plan;
+    plan.bodies.resize(motion.system.bodies.size());
+    for (BodyPlan& body : plan.bodies) body.reason = PlanReason::kGiven;
+    return plan;
+}
+
 /// Runs methods that the scene names for all bodies.
 Plan run_named(Motion& motion, const std::vector<MethodDef>& methods, const OnProgress& on_progress) {
     const Timeline& timeline = *motion.timeline;
     sim::Recording& recording = *motion.recording;
-    const CancelScope progress([&] {
-        report_progress(on_progress, static_cast<std::int64_t>(recording.size()),
-                        static_cast<std::int64_t>(timeline.size()));
-    });
+    const CancelScope progress = report_recorded(motion, on_progress);
     Simulation run(motion.system, motion.world, methods, timeline.step_s());
     Plan plan;
     for (const MethodDef& method : run.methods()) plan.bodies.emplace_back().method = method;
@@ -67,6 +90,7 @@ Plan run_named(Motion& motion, const std::vector<MethodDef>& methods, const OnPr
 }
 
 Plan run(Motion& motion, const Scene& scene, const OnProgress& on_progress) {
+    if (motion.given) return record_given(motion, on_progress);
     const sim::NamedMethods named = named_methods(scene);
     if (const std::vector<MethodDef> methods = if_all_named(named); !methods.empty())
         return run_named(motion, methods, on_progress);
@@ -126,6 +150,11 @@ void Motion::for_each(std::span<const double> times_s,
             continue;
         }
         if (index || time_s > end_s()) fail_diverged(*this, time_s);
+        if (given) {
+            const State at = given_state(*given, time_s, system, recording->fields());
+            visit(at, given_figures(system, at));
+            continue;
+        }
         if (!run) {
             run.emplace(system, world, methods(), timeline->step_s());
             run->set_outputs(recording->fields());
@@ -155,6 +184,8 @@ std::shared_ptr<const Motion> simulate(const Scene& scene, const RecordDef& def)
         const CancelScope starting([&] { report_progress(def.on_progress, 0, last_frame_of(scene) + 1); });
         motion = std::make_shared<Motion>(system_of(scene), scene.world);
         motion->duration_s = scene.world.duration_s;
+        motion->given = scene.given;
+        if (scene.given) start_as_given(*scene.given, motion->system);
         motion->timeline = timeline_of(scene, motion->system, def);
         motion->recording.emplace(motion->system.particle_count(), motion->timeline->size(),
                                   motion->system.bars.size(), quantity_of(scene.style.color_by),

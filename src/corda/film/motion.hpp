@@ -39,8 +39,8 @@ struct Motion : NonCopyable {
     [[nodiscard]] std::vector<MethodDef> methods() const;
 
     /// Calls `visit` with the states at increasing times within the scene. Those that are not recorded take
-    /// one more simulation in all, with the same bits. Throws corda::Error: kDiverged if the motion ends
-    /// before, kInterrupted if cancelled.
+    /// one more simulation in all, with the same bits, unless the motion is given. Throws corda::Error:
+    /// kDiverged if the motion ends before, kInterrupted if cancelled.
     void for_each(std::span<const double> times_s,
                   const std::function<void(const State&, const Figures&)>& visit) const;
     /// The state at a time. Throws as for_each().
@@ -57,13 +57,14 @@ struct Motion : NonCopyable {
     std::optional<Timeline> timeline;
     std::optional<sim::Recording> recording;
     std::optional<sim::EnergyMeter> meter;
+    std::shared_ptr<const GivenMotion> given;  ///< null: the motion is simulated
     double weight_at_start_j = 0.0;
 };
 
-/// Plans and simulates a scene that validate() accepts, and records it at the times of frames, stills,
-/// exposures, plots and arrows. A run that diverges ends early. Throws corda::Error: kInvalidScene if no
-/// method can run the scene or provide its tensions, kInterrupted if cancelled or if on_progress returns
-/// false, kIo without room on the disk for a motion that exceeds the memory.
+/// Plans and simulates a scene that validate() accepts, or takes its given motion, and records it at the
+/// times of frames, stills, exposures, plots and arrows. A run that diverges ends early. Throws corda::Error:
+/// kInvalidScene if no method can run the scene or provide its tensions, kInterrupted if cancelled or if
+/// on_progress returns false, kIo without room on the disk for a motion that exceeds the memory.
 [[nodiscard]] std::shared_ptr<const Motion> simulate(const Scene& scene, const RecordDef& def);
 
 /// Changes of a system that may keep it from diverging, in words.

@@ -12,6 +12,7 @@
 
 #include "corda/core/text.hpp"
 #include "corda/core/timeline.hpp"
+#include "corda/film/given.hpp"
 #include "corda/scene/schema.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/moving_pins.hpp"
@@ -252,6 +253,7 @@ void validate(const Scene& scene, std::span<const double> stills_s) {
     validate_frame_rate(scene);
     check_definitions(scene);
     validate_frames(scene);
+    if (scene.given) validate_given(scene);
     static_cast<void>(solvers_of(scene));
     for (const double time_s : stills_s) {
         if (motion_time_s(scene, time_s)) continue;
@@ -261,6 +263,10 @@ void validate(const Scene& scene, std::span<const double> stills_s) {
 
 std::vector<std::string> input_notes(const Scene& scene, const System& system, const Plan& plan) {
     std::vector<std::string> notes;
+    if (scene.given) {  // other notes are of simulations
+        add_spare_colors(scene, system, notes);
+        return notes;
+    }
     if (scene.world.drag_1_s == 0.0 &&
         (scene.world.wind_m_s != Vec2{} || scene.world.gusts.amplitude != Vec2{}))
         notes.emplace_back(

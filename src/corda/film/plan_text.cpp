@@ -64,6 +64,12 @@ std::string_view remedy(Refusal::Reason reason) {
     return "";
 }
 
+constexpr std::string_view kGivenName = "given";
+
+bool is_given(const Plan& plan) {
+    return plan.bodies.front().reason == PlanReason::kGiven;
+}
+
 /// Range of the values above 0 of one quantity over all bodies.
 class Values {
   public:
@@ -153,6 +159,14 @@ std::string nets_term(const Scene& scene) {
 
 }  // namespace
 
+std::string_view method_name(const BodyPlan& plan) {
+    return plan.reason == PlanReason::kGiven ? kGivenName : method_name(plan.method);
+}
+
+std::string method_text(const BodyPlan& plan) {
+    return plan.reason == PlanReason::kGiven ? std::string(kGivenName) : sim::method_text(plan.method);
+}
+
 std::string system_text(const System& system) {
     const std::int64_t nets = std::ssize(system.bodies) - static_cast<std::int64_t>(rope_count(system));
     const auto ropes = static_cast<std::int64_t>(rope_count(system));
@@ -177,6 +191,8 @@ std::string reason_text(const BodyPlan& plan) {
                    "motion; there is no estimate of the error";
         case PlanReason::kCheapest:
             return "its error is within the tolerance, with less work than method exact";
+        case PlanReason::kGiven:
+            return "its positions are given and not simulated";
         case PlanReason::kManySteps:
             return "methods that keep bars at their lengths would take too many steps; there is no estimate "
                    "of the error";
@@ -255,11 +271,14 @@ std::string bodies_text(const System& system, const std::vector<std::size_t>& bo
 
 std::string plan_text(const System& system, const Plan& plan) {
     const std::vector<MethodGroup> groups = groups_of(plan);
-    if (groups.size() == 1) return sim::method_text(groups.front().method);
+    const auto text_of = [&](const MethodGroup& group) {
+        return method_text(plan.bodies[group.bodies.front()]);
+    };
+    if (groups.size() == 1) return text_of(groups.front());
     std::string text;
     for (const MethodGroup& group : groups) {
         if (!text.empty()) text += "; ";
-        text += fmt::format("{} ({})", sim::method_text(group.method), bodies_text(system, group.bodies));
+        text += fmt::format("{} ({})", text_of(group), bodies_text(system, group.bodies));
     }
     return text;
 }
@@ -267,7 +286,7 @@ std::string plan_text(const System& system, const Plan& plan) {
 std::string method_names(const Plan& plan) {
     std::vector<std::string_view> names;
     for (const BodyPlan& body : plan.bodies) {
-        const std::string_view name = method_name(body.method);
+        const std::string_view name = method_name(body);
         if (std::ranges::find(names, name) == names.end()) names.push_back(name);
     }
     return fmt::format("{}", fmt::join(names, ", "));
@@ -316,6 +335,8 @@ nlohmann::json or_null(const std::optional<std::string>& value) {
 }
 
 std::vector<std::string> modelled_terms(const Scene& scene, const Plan& plan) {
+    if (is_given(plan))
+        return {"nothing: the positions are given, so forces, velocities, moves and methods change nothing"};
     const RelaxationDef* relaxation = nullptr;
     bool relaxes_all = true;
     for (const BodyPlan& body : plan.bodies) {
@@ -362,6 +383,8 @@ std::optional<std::string> error_estimate_text(const Film& film) {
 
 Scene frozen_scene(const Film& film) {
     Scene scene = film.scene();
+    scene.camera = film.camera();
+    if (is_given(film.plan())) return scene;
     std::vector<MethodGroup> groups = groups_of(film.plan());
     // [solver] is for the largest group.
     std::ranges::stable_sort(
@@ -377,7 +400,6 @@ Scene frozen_scene(const Film& film) {
                 .push_back(static_cast<std::uint32_t>(is_rope ? body : body - scene.ropes.size()));
         }
     }
-    scene.camera = film.camera();
     return scene;
 }
 

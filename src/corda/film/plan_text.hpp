@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "corda/core/basics.hpp"
@@ -14,6 +15,11 @@
 #include "corda/view/defs.hpp"
 
 namespace corda {
+
+/// The method of a body as the plan names it: "given" if its positions are.
+[[nodiscard]] std::string_view method_name(const BodyPlan& plan);
+/// The same with its settings: "exact at tolerance 1e-05".
+[[nodiscard]] std::string method_text(const BodyPlan& plan);
 
 /// Size of a system: "40 particles, 252 bars (39 real)".
 [[nodiscard]] std::string system_text(const System& system);

@@ -192,6 +192,12 @@ Provenance provenance_of(const Scene& scene) {
     Provenance provenance;
     provenance.corda = version();
     provenance.name = shortened(printable(scene.name), kMaxName);
+    if (scene.given) {
+        // The hash tells the pictures of other positions apart.
+        provenance.left_out =
+            fmt::format("its positions were given (hash {}) and not simulated", scene.given->hash());
+        return provenance;
+    }
     std::size_t particles = 0;
     for (const RopeDef& rope : scene.ropes) particles += rope.points_m.size();
     for (const NetDef& net : scene.nets) particles += net.points_m.size();

@@ -148,6 +148,7 @@ Scene parse_scene(std::string_view toml, const std::string& source_name, const s
     scene.settings = settings;
     scene.settings.insert(scene.settings.end(), more.settings.begin(), more.settings.end());
     read_fields(sections.world, scene.world);
+    scene.has_duration = sections.world.has("duration");
     read_fields(sections.world.table("gusts"), scene.world.gusts);
     const SolverSection solver = read_solver(sections, scene);
     read_section(sections.video, scene.video);

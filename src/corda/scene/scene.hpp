@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/sim/defs.hpp"
+#include "corda/sim/given_motion.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/defs.hpp"
 
@@ -139,6 +141,10 @@ struct Scene {
     CameraDef camera;
     VideoDef video;
     std::optional<GoldenDef> golden;  ///< empty: the scene is no golden test
+    bool has_duration = false;        ///< a file or a setting gives world.duration
+    /// A motion in place of a simulated one; null: the scene is simulated. No part of a scene file. See
+    /// give_motion().
+    std::shared_ptr<const GivenMotion> given;
 };
 
 /// One `--set key=value` of the command line, e.g. "video.fps=30" or "rope[0].mass=2". The value is read as

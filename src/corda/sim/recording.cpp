@@ -50,6 +50,16 @@ const QuantityKind& kind_of(Quantity quantity) {
     return kQuantities[static_cast<std::size_t>(quantity)];
 }
 
+double max_strain(const System& system, const State& state) {
+    double largest = 0.0;
+    for (const Body& body : system.bodies) {
+        for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k) {
+            largest = std::max(largest, std::abs(strain_of_link(system, body, k, state)));
+        }
+    }
+    return largest;
+}
+
 void Histogram::add(double value) {
     if (std::isnan(value)) return;
     ++count_;
@@ -121,24 +131,33 @@ Status Recording::advance(Simulation& run, const Timeline& timeline, const std::
     const Status status = run.advance_to(timeline.time_s(size()));
     if (clock_s) wall_s_ += clock_s() - start_s;
     if (status == Status::kDiverged) return status;
-    const State& state = run.state();
-    if (timeline.is_frame(size())) {
+    diagnostics_ = run.diagnostics();
+    energy_scale_j_ = run.energy_scale_j();
+    add_state(run.system(), run.state(), run.figures(), timeline.is_frame(size()));
+    energy_change_j_.push_back(run.energy_change_j());
+    return status;
+}
+
+void Recording::add(const System& system, const State& state, const Figures& figures, bool is_frame) {
+    diagnostics_.largest = larger_figures(diagnostics_.largest, figures);
+    add_state(system, state, figures, is_frame);
+    energy_change_j_.push_back(figures.energy_change_j);
+}
+
+void Recording::add_state(const System& system, const State& state, const Figures& figures, bool is_frame) {
+    if (is_frame) {
         bounds_.include(state);
         for (std::size_t i = 0; i < particle_count_; ++i)
             particle_bounds_[i].include(state.x_m[i], state.y_m[i]);
-        if (quantity_) add_to_histogram(run.system(), state);
+        if (quantity_) add_to_histogram(system, state);
     }
-    diagnostics_ = run.diagnostics();
-    energy_change_j_.push_back(run.energy_change_j());
-    energy_scale_j_ = run.energy_scale_j();
     row_.assign(1, state.time_s);
     for (const Part& part : parts_) {
         const auto first = (state.*part.array).begin();
         row_.insert(row_.end(), first, first + static_cast<std::ptrdiff_t>(part.count));
     }
     values_.write(figures_.size() * state_size_, row_);
-    figures_.push_back(run.figures());
-    return status;
+    figures_.push_back(figures);
 }
 
 void Recording::add_to_histogram(const System& system, const State& state) {

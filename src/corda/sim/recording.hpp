@@ -25,6 +25,9 @@ struct QuantityKind {
 };
 [[nodiscard]] const QuantityKind& kind_of(Quantity quantity);
 
+/// The largest | length / rest length - 1 | of a link of a state.
+[[nodiscard]] double max_strain(const System& system, const State& state);
+
 /// Distribution of values: minimum, maximum and a histogram of their sizes. Ignores NaN.
 class Histogram {
   public:
@@ -62,6 +65,8 @@ class Recording {
     /// Advances a run to time size() of a timeline and adds its state, unless the run diverges. `clock_s`, if
     /// not empty, measures the stepping.
     Status advance(Simulation& run, const Timeline& timeline, const std::function<double()>& clock_s);
+    /// Adds a state that no run has computed, with what is known of it.
+    void add(const System& system, const State& state, const Figures& figures, bool is_frame);
     /// Adds the recording of a body, made by for_part(), whose particles start at `first_particle` and bars
     /// at `first_bar`. Keeps the states that all bodies added so far have.
     void add_body(const Recording& body, std::size_t first_particle, std::size_t first_bar = 0);
@@ -90,6 +95,7 @@ class Recording {
 
   private:
     void add_figures(const Recording& body);
+    void add_state(const System& system, const State& state, const Figures& figures, bool is_frame);
     void add_to_histogram(const System& system, const State& state);
 
     /// One array of a recorded state.

@@ -23,17 +23,6 @@ bool is_sound(const State& state) {
     return std::ranges::all_of(state.x_m, near) && std::ranges::all_of(state.y_m, near);
 }
 
-double max_strain(const System& system, const State& state) {
-    double largest = 0.0;
-    for (const Body& body : system.bodies) {
-        for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k) {
-            const double strain = sim::kind_of(Quantity::kStrain).value(system, body, k, state);
-            largest = std::max(largest, std::abs(strain));
-        }
-    }
-    return largest;
-}
-
 /// Throws corda::Refusal for a field outside the range of its declaration.
 void check(const WorldDef& world) {
     const auto refuse = [](const char* problem) {
@@ -134,7 +123,7 @@ void Simulation::observe() {
     const FlushDenormals flush;
     find_tensions();
     read();
-    figures_.strain = max_strain(system_, state_);
+    figures_.strain = sim::max_strain(system_, state_);
     figures_.energy_change_j = solver_->energy_j() - initial_energy_j_;
     figures_.energy_error = sim::energy_error(energy_change_j(), energy_scale_j_);
     figures_.loads = std::nullopt;

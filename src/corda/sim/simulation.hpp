@@ -143,6 +143,7 @@ enum class PlanReason {
     kDependent,  ///< the bars depend on each other at the start, in a way that no method can follow
     kCheapest,   ///< `exact` can move it, and another method with less work is good enough
     kManySteps,  ///< every method with an estimate would take too many steps
+    kGiven,      ///< no method moves it: its positions are given (see GivenMotion)
 };
 
 /// The reason why a net of rigid bars never moves.
