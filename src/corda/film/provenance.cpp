@@ -192,6 +192,7 @@ Provenance provenance_of(const Scene& scene) {
     Provenance provenance;
     provenance.corda = version();
     provenance.name = shortened(printable(scene.name), kMaxName);
+    if (!is_sound_name(provenance.name)) provenance.name = "scene";  // of a scene that code has filled in
     if (scene.given) {
         // The hash tells the pictures of other positions apart.
         provenance.left_out =

@@ -42,6 +42,15 @@ TEST(Provenances, OfScenesThatCodeChangesSayWhatIsDrawn) {
     EXPECT_EQ(provenance_of(scene).scene, made.scene);
 }
 
+TEST(Provenances, OfScenesWithoutANameOfAFileCanBeReadBack) {
+    Scene scene = parse_scene(kScene, "a.toml");
+    for (const std::string name : {"", "a/b", ".."}) {
+        scene.name = name;
+        EXPECT_EQ(read(provenance_text(provenance_of(scene))).name, "scene");
+        EXPECT_EQ(left_out_of(provenance_text(provenance_of(scene))), "");
+    }
+}
+
 /// A text of random characters, which cannot be compressed to less than half.
 std::string random_text(std::size_t bytes) {
     std::mt19937 random(1);
