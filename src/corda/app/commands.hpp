@@ -72,6 +72,7 @@ auto add_command(CLI::App& app, Action& action, const std::string& name, const s
 struct SceneOptions {
     std::string path;
     std::string from;                ///< a picture or a video that carries its scene, in place of `path`
+    std::string positions;           ///< a file of a given motion; empty: the scene is simulated
     std::vector<Setting> settings;   ///< of --set
     std::vector<Setting> shortcuts;  ///< of options such as --fps; they count after those of --set
 
@@ -85,6 +86,8 @@ struct SceneOptions {
 void add_scene(CLI::App& command, SceneOptions& scene);
 /// `--from FILE` in place of SCENE.
 void add_from(CLI::App& command, SceneOptions& scene);
+/// `--positions FILE` in place of a simulation.
+void add_positions(CLI::App& command, SceneOptions& scene);
 /// Makes `--name VALUE` stand for `--set key=VALUE`.
 void add_shortcut(CLI::App& command, SceneOptions& scene, const std::string& name, const std::string& key,
                   const std::string& help);

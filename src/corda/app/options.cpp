@@ -113,6 +113,16 @@ void add_from(CLI::App& command, SceneOptions& scene) {
         ->excludes(path);
 }
 
+void add_positions(CLI::App& command, SceneOptions& scene) {
+    command
+        .add_option(
+            "--positions", scene.positions,
+            "draw these positions in place of a simulation: CSV as simulate writes it (t, x0, y0, ...), "
+            "or .npz with the arrays times and positions; world.duration is their last time, if nothing "
+            "gives it")
+        ->type_name("FILE");
+}
+
 void add_shortcut(CLI::App& command, SceneOptions& scene, const std::string& name, const std::string& key,
                   const std::string& help) {
     const std::size_t dot = key.find('.');
@@ -212,6 +222,7 @@ Loaded load(const Console& console, const SceneOptions& options) {
         throw Error(ExitCode::kUsage, error.problems());
     }
     if (!options.from.empty()) check_size_from_file(options, loaded.scene.video);
+    if (!options.positions.empty()) give_motion(loaded.scene, read_positions(options.positions));
     warn_of_unseen_texts(console, loaded.scene);
     return loaded;
 }

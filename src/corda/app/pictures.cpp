@@ -389,6 +389,7 @@ ExitCode draw_sheet(const Console& console, const PictureOptions& options) {
 void add_options(CLI::App& command, PictureOptions& options, const std::string& output_help) {
     add_scene(command, options.scene);
     add_from(command, options.scene);
+    add_positions(command, options.scene);
     auto* at = command.add_option("--at", options.at, "times in seconds, e.g. 0,0.5,1.25")
                    ->delimiter(',')
                    ->allow_extra_args(false)  // the scene may follow

@@ -43,8 +43,8 @@ nlohmann::json to_json(const Trial& trial) {
 nlohmann::json to_json(const Film& film, std::size_t i) {
     const BodyPlan& body = film.plan().bodies[i];
     nlohmann::json json = {{"body", body_name(film.system(), i)},
-                           {"method", method_name(body.method)},
-                           {"solver", sim::method_text(body.method)},
+                           {"method", method_name(body)},
+                           {"solver", method_text(body)},
                            {"reason", reason_text(body)},
                            {"error_estimate_m", or_null(body.error_estimate_m)},
                            {"horizon_s", or_null(body.horizon_s)},
@@ -61,8 +61,7 @@ void report_methods(const Console& console, const Film& film) {
     for (const MethodGroup& group : groups) {
         const BodyPlan& body = film.plan().bodies[group.bodies.front()];
         const std::string whose = groups.size() == 1 ? "" : " of " + bodies_text(film.system(), group.bodies);
-        console.result(fmt::format("solver{}: {}, because {}", whose, sim::method_text(group.method),
-                                   reason_text(body)));
+        console.result(fmt::format("solver{}: {}, because {}", whose, method_text(body), reason_text(body)));
         const std::string whom =
             is_one ? "" : fmt::format(" for {}", body_name(film.system(), group.bodies.front()));
         for (const Trial& trial : body.trials) {
@@ -82,6 +81,8 @@ void report_in_words(const Console& console, const Film& film, const std::vector
         console.result("error estimate: " + *estimate);
     else if (plan.horizon_s == 0.0)
         console.result("error estimate: none; the motion cannot be predicted from the start");
+    else if (film.scene().given)
+        console.result("error estimate: none; the positions are those of " + film.scene().given->source());
     else
         console.result("error estimate: none; method auto tries tighter runs and tells how far they differ");
     for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
@@ -125,6 +126,7 @@ void add_plan(CLI::App& app, Action& action) {
     auto [command, options] = add_command(
         app, action, "plan", "show the model, the method and the reason for it, and its error", plan);
     add_scene(command, options.scene);
+    add_positions(command, options.scene);
     add_size(command, options.scene);
     add_timing(command, options.scene);
     command.add_flag("--toml", options.toml,

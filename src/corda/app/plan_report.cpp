@@ -80,7 +80,7 @@ Film make_film(const Console& console, const Scene& scene, FilmDef def, const st
     def.on_progress = show_progress(console, what);
     Film film(scene, def);
     for (const std::string& note : film.plan().notes) console.warning(note);
-    if (!std::holds_alternative<AutoDef>(film.scene().solver)) return film;
+    if (film.scene().given || !std::holds_alternative<AutoDef>(film.scene().solver)) return film;
     if (const auto estimate = error_estimate_text(film)) {
         console.info(fmt::format("auto: {}; error estimate {}, from tighter runs",
                                  plan_text(film.system(), film.plan()), *estimate));

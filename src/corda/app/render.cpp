@@ -230,6 +230,7 @@ void add_render(CLI::App& app, Action& action) {
     auto [command, options] = add_command(app, action, "render", "turn a scene into a video", render);
     add_scene(command, options.scene);
     add_from(command, options.scene);
+    add_positions(command, options.scene);
     command.add_option("-o,--output", options.output, "the ending chooses the format: " + endings_text())
         ->required();
     add_size(command, options.scene);
