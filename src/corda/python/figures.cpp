@@ -205,9 +205,9 @@ py::dict body_facts(const Film& film, const System& named, std::size_t b,
     facts["reach"] = reach;
     facts["compliance"] = body.material.compliance_1_n;
     facts["payload_kg"] = body.payload_kg;
-    const MethodDef& method = film.plan().bodies[b].method;
-    facts["method"] = std::string(method_name(method));
-    facts["knows_tensions"] = sim::knows_tensions(method);
+    const BodyPlan& plan = film.plan().bodies[b];
+    facts["method"] = std::string(method_name(plan));
+    facts["knows_tensions"] = plan.reason != PlanReason::kGiven && sim::knows_tensions(plan.method);
     facts["moves"] = false;
     for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i)
         if (!system.stays_pinned(i)) facts["moves"] = true;

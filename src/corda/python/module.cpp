@@ -2,6 +2,7 @@
 #include <pybind11/functional.h>
 #include <pybind11/stl.h>
 
+#include <corda/film/plan_text.hpp>
 #include <corda/golden/check_golden.hpp>
 #include <corda/golden/compare.hpp>
 
@@ -66,7 +67,7 @@ py::dict plan(const PyFilm& film) {
         const py::gil_scoped_acquire hold;
         py::list methods;
         for (const corda::BodyPlan& body : chosen.bodies)
-            methods.append(std::string(corda::method_name(body.method)));
+            methods.append(std::string(corda::method_name(body)));
         py::dict all;
         all["methods"] = methods;
         all["error_estimate_m"] = chosen.error_estimate_m;
@@ -140,16 +141,29 @@ void add_errors(py::module_& module) {
         });
 }
 
+using Numbers = py::array_t<double, py::array::c_style>;
+using Given = std::pair<Numbers, Numbers>;
+
+/// The motion of the arrays `times`, (n), and `positions`, (n, particles, 2).
+corda::GivenMotion motion_of(const Given& given) {
+    const auto& [times, positions] = given;
+    std::vector<corda::Vec2> positions_m;
+    for (const double* at = positions.data(); at != positions.data() + positions.size(); at += 2)
+        positions_m.push_back({at[0], at[1]});
+    return {std::vector<double>(times.data(), times.data() + times.size()), std::move(positions_m)};
+}
+
 void add_film(py::module_& module) {
     using corda::Film;
     py::class_<PyFilm> film(module, "Film");
     film.def(py::init([](const std::string& text, const std::string& source, bool is_path,
                          const std::vector<std::string>& settings, const std::string& backend,
-                         bool require_gpu) {
-            const corda::Scene scene = Asking().run([&] {
+                         bool require_gpu, const std::optional<Given>& given) {
+            corda::Scene scene = Asking().run([&] {
                 return is_path ? corda::load_scene(source, settings)
                                : corda::parse_scene(text, source, settings);
             });
+            if (given) give_motion(scene, motion_of(*given));
             return std::make_unique<PyFilm>(scene, backend, require_gpu);
         }))
         .def("frame_count", [](const PyFilm& film) { return film.film().frame_count(); })

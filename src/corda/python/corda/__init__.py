@@ -226,6 +226,29 @@ def _frame_index(value, film):
     return k % count
 
 
+def _real_array(value, name):
+    """An array of float64 of real numbers."""
+    array = _np.asarray(value)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name}: takes an array of numbers, not of {array.dtype}")
+    return _np.ascontiguousarray(array, dtype=_np.float64)
+
+
+def _given(positions, times):
+    """The arrays of a given motion, times first; None without them."""
+    if positions is None and times is None:
+        return None
+    if positions is None or times is None:
+        raise TypeError("Film takes positions and times together")
+    times, positions = _real_array(times, "times"), _real_array(positions, "positions")
+    if times.ndim != 1:
+        raise ValueError(f"times: takes an array of shape (n,), not {times.shape}")
+    if positions.ndim != 3 or positions.shape[0] != len(times) or positions.shape[2] != 2:
+        raise ValueError(f"positions: takes an array of shape ({len(times)}, particles, 2) for {len(times)} times, not "
+                         f"{positions.shape}")
+    return times, positions
+
+
 def _answering(on_progress):
     """Wraps a callback: only False (of Python or numpy) stops the work; None and other results continue it."""
     if on_progress is None:
@@ -250,6 +273,12 @@ class Film:
     kind, text, and lists, arrays and dictionaries of these; None leaves a key unchanged. `backend` and `require_gpu` choose
     OpenGL like --backend and --require-gpu.
 
+    positions, times: a motion in place of a simulation, such as one of MuJoCo, a measurement or an integrator of your own:
+    float64 of shape (n, particles, 2) in m, ropes before nets, at n increasing times in s, the first of them at most 0. Between
+    these times, particles move along cubic polynomials. The bodies and their look are those of the scene, the duration is the
+    last time unless the scene or a keyword gives it, and the plan's methods are "given". Velocities follow from the positions;
+    tensions are NaN.
+
     Raises Error for a scene that cannot be read (code 6) or is invalid (3); reading or drawing raises Error for a motion that
     diverges (8), an unknown backend (2), and drawing without OpenGL (4). Warns before a simulation of many seconds. Ctrl-C ends
     every call. Threads may share a film; it serves one at a time, without holding the interpreter's lock.
@@ -261,14 +290,16 @@ class Film:
     #: For corda.plot: see corda/_motion.py.
     _motion = None
 
-    def __init__(self, path=None, *, text=None, settings=None, backend=None, require_gpu=False, **keys):
+    def __init__(self, path=None, *, text=None, positions=None, times=None, settings=None, backend=None, require_gpu=False,
+                 **keys):
         if (path is None) == (text is None):
             raise TypeError("Film takes a path or text=..., and not both")
         lines = _settings(settings, keys)
         source = _path(path) if path is not None else b"text"
         self._gl = _gl(backend, require_gpu)
+        given = _given(positions, times)
         try:
-            self._film = _corda.Film(_text(text or "", "text"), source, path is not None, list(lines), *self._gl)
+            self._film = _corda.Film(_text(text or "", "text"), source, path is not None, list(lines), *self._gl, given)
         except Error as error:
             raise _in_words_of_the_caller(error, lines) from None
 

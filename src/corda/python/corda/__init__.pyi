@@ -30,6 +30,8 @@ class Film:
         path: str | bytes | PathLike[str] | None = None,
         *,
         text: str | None = None,
+        positions: ArrayLike | None = None,
+        times: ArrayLike | None = None,
         settings: Mapping[str, Any] | None = None,
         backend: str | None = None,
         require_gpu: bool = False,

@@ -66,7 +66,7 @@ def _film(options):
     def load(settings):
         film = Film.__new__(Film)
         film._gl = gl
-        film._film = _corda.Film(text, source, is_path, settings, *gl)
+        film._film = _corda.Film(text, source, is_path, settings, *gl, None)
         return film
 
     try:

@@ -22,7 +22,7 @@ _PLAIN_SCENE = "schema = 1\n[[rope]]\nhang = { links = 1, length = 1.0 }\n"
 def _known_gl(backend, require_gpu):
     """How to reach OpenGL. Raises Error (code 2) for an unknown backend, which would refuse every sample."""
     gl = _gl(backend, require_gpu)
-    _corda.Film(_PLAIN_SCENE, b"text", False, [], *gl)
+    _corda.Film(_PLAIN_SCENE, b"text", False, [], *gl, None)
     return gl
 
 
