@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "corda/core/exponential.hpp"
+
 namespace corda::view {
 namespace {
 
@@ -95,6 +97,11 @@ class Axis {
     std::vector<Span> spans_;
 };
 
+/// ln(b / a) of the heights of two keys.
+double log_ratio(const CameraTrack::Key& a, const CameraTrack::Key& b) {
+    return natural_log(b.height_m / a.height_m);
+}
+
 }  // namespace
 
 double least_height_m(const CameraDef& def, double height_m) {
@@ -166,7 +173,7 @@ CameraTrack::CameraTrack(std::vector<Key> keys) : keys_(std::move(keys)), slopes
         };
         slopes_[i].center_m = {slope(a.center_m.x, b.center_m.x, c.center_m.x),
                                slope(a.center_m.y, b.center_m.y, c.center_m.y)};
-        slopes_[i].height_m = slope(a.height_m, b.height_m, c.height_m);
+        slopes_[i].height_m = slope(-log_ratio(a, b), 0.0, log_ratio(b, c));
     }
 }
 
@@ -193,7 +200,8 @@ CameraDef CameraTrack::at(const CameraDef& def, double time_s) const {
     const Key& vb = slopes_[i];
     placed.center_m = {between(a.center_m.x, b.center_m.x, va.center_m.x, vb.center_m.x),
                        between(a.center_m.y, b.center_m.y, va.center_m.y, vb.center_m.y)};
-    placed.height_m = between(a.height_m, b.height_m, va.height_m, vb.height_m);
+    // exp(0) is 1: a height that stays is exact.
+    placed.height_m = a.height_m * exponential(between(0.0, log_ratio(a, b), va.height_m, vb.height_m));
     return placed;
 }
 

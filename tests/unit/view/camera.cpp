@@ -133,6 +133,12 @@ TEST(CameraTrack, PassesItsKeysWithoutOvershootAndRestsAtItsEnds) {
         EXPECT_GE(*at(t).height_m, 1.0) << t;
         x = at(t).center_m->x;
     }
+    EXPECT_NEAR(*CameraTrack({{0.0, {}, 4.0}, {1.0, {}, 1.0}}).at({}, 0.5).height_m, 2.0,
+                1e-15);  // in its logarithm
+    const CameraTrack even({{0.0, {}, 1.0}, {1.0, {}, 2.0}, {2.0, {}, 4.0}, {3.0, {}, 8.0}});
+    EXPECT_NEAR(*even.at({}, 1.25).height_m, 2.0 * std::pow(2.0, 0.25),
+                1e-14);  // at a constant rate between keys
+    EXPECT_EQ(*CameraTrack({{0.0, {}, 0.7}, {1.0, {}, 0.7}}).at({}, 0.3).height_m, 0.7);
     EXPECT_LT(at(1.01).center_m->x, 0.001);  // it starts at rest; measured 3.5e-4
     EXPECT_GT(at(2.01).center_m->x, 1.004);  // and passes inner keys; measured 1.0048
 }
