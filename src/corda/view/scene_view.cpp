@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "corda/core/basics.hpp"
+#include "corda/sim/events.hpp"
 #include "corda/view/draw_list.hpp"
 
 namespace corda::view {
@@ -73,6 +74,24 @@ std::vector<Ball> balls_of(const System& system, const Body& body, const BodyVie
                          style.payload_radius_m.value_or(0.0)});
     }
     return balls;
+}
+
+/// See BodyView::dots.
+std::vector<Ball> dots_of(const System& system, const Body& body, const BodyView& view) {
+    if (system.cut_s.empty()) return {};
+    constexpr std::size_t kNone = SIZE_MAX;
+    std::vector<std::size_t> last(body.particle_count, kNone);  // the link that is cut last, of each particle
+    for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k) {
+        for (const std::size_t i : {system.bars[k].a, system.bars[k].b}) {
+            std::size_t& link = last[i - body.first_particle];
+            if (link == kNone || system.cut_s[k] > system.cut_s[link]) link = k;
+        }
+    }
+    std::vector<Ball> dots;
+    for (std::size_t i = 0; i < last.size(); ++i)
+        if (last[i] != kNone && system.cut_s[last[i]] < sim::kNoEvent)
+            dots.push_back({body.first_particle + i, last[i], link_radius_px(body, view, last[i])});
+    return dots;
 }
 
 /// The end of the row of merged bodies that starts at `first`.
@@ -171,6 +190,12 @@ void draw_links(const SceneView& view, std::size_t b, bool is_tinted, double hal
         else
             list.add_capsule(camera.at(state, link.a), camera.at(state, link.b), radius_px, stroke.halo_px,
                              stroke.tint);
+    }
+    for (const Ball& dot : view.bodies[b].dots) {
+        if (view.system->has_bar_at(dot.link, state.time_s)) continue;
+        const PixelPoint at = camera.at(state, dot.particle);
+        list.add_capsule(at, at, dot.radius_px, halo_per_radius * dot.radius_px,
+                         is_tinted ? tint_of(view, b, dot.link, state) : Tint{});
     }
 }
 
@@ -277,6 +302,7 @@ SceneView make_scene_view(const System& system, Vec2 gravity_m_s2, const StyleDe
             BodyView{color, by_link ? own.link_colors : std::vector<Color>{}, 0.5 * body_px, 0.5 * end_px,
                      marker_px(kPinnedRim), marker_px(kFreeRim), i > 0 && own.merged, own.label_at});
         if (style.payload) drawn.balls = balls_of(system, body, drawn, style, side_px);
+        drawn.dots = dots_of(system, body, drawn);
         view.ball_count += drawn.balls.size();
         line_px.push_back(drawn.radius_px);
     }

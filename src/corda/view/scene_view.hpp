@@ -89,6 +89,8 @@ struct BodyView {
     bool is_merged = false;  ///< drawn in the layer of the body before
     std::optional<LabelAt> label_at = {};
     std::vector<Ball> balls = {};
+    /// Particles that lose all their links, drawn from then on: `link` is the last that is cut.
+    std::vector<Ball> dots = {};
 };
 
 /// The content, colours and sizes of all pictures of a scene. Positions come with a state.

@@ -91,6 +91,16 @@ TEST(SceneView, ALinkThatIsCutIsGone) {
     EXPECT_EQ(left[2], 3U);
 }
 
+TEST(SceneView, AParticleWithoutLinksIsADot) {
+    RopeDef rope = reference::straight_rope(5, 1.0, 30.0);
+    rope.cuts = {{1, 1.0}, {2, 2.0}};
+    const auto [one, both] = counts_at(rope, plain(), 1.5, 2.0);
+    EXPECT_EQ(one[0], 4U);
+    EXPECT_EQ(both[0], 3U + 1U);
+    rope.cuts = {{4, 0.0}};  // the free end
+    EXPECT_EQ(counts_at(rope, plain(), 0.0, 1.0)[0][0], 4U + 1U);
+}
+
 TEST(SceneView, APinThatIsLetGoIsAFreeParticle) {
     RopeDef rope = reference::straight_rope(2, 1.0, 30.0);
     rope.releases = {{0, 1.0}};
