@@ -12,6 +12,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <ostream>
 #include <string>
@@ -29,6 +30,14 @@ inline void PrintTo(const Image& image, std::ostream* out) {
 
 namespace testing {
 
+/// The command that runs the present test alone; empty outside of tests.
+inline std::string rerun_command() {
+    const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
+    if (test == nullptr) return "";
+    return std::string(program_invocation_name) + " --gtest_filter=" + test->test_suite_name() + "." +
+           test->name();
+}
+
 /// See MatchesGolden().
 class GoldenMatcher {
   public:
@@ -38,7 +47,9 @@ class GoldenMatcher {
         : name_(std::move(name)), options_(std::move(options)) {}
 
     bool MatchAndExplain(const Image& drawn, ::testing::MatchResultListener* listener) const {
-        const GoldenOutcome outcome = check_golden(drawn, name_, options_);
+        GoldenOptions options = options_;
+        if (options.rerun.empty()) options.rerun = rerun_command();
+        const GoldenOutcome outcome = check_golden(drawn, name_, options);
         if (outcome.written) std::fprintf(stderr, "%s\n", outcome.message.c_str());
         *listener << outcome.message;
         return outcome.matches;
@@ -54,7 +65,7 @@ class GoldenMatcher {
 };
 
 /// Matches a picture that equals the golden picture of this name, for example "swing_0120.png", or is within
-/// the limits of `options`; see check_golden().
+/// the limits of `options`; see check_golden(). With `.film = &film` a failure names the keys that changed.
 inline ::testing::Matcher<const Image&> MatchesGolden(std::string name, GoldenOptions options = {}) {
     return GoldenMatcher(std::move(name), std::move(options));
 }

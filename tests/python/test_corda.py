@@ -334,6 +334,31 @@ def test_golden_pictures(film, tmp_path, monkeypatch, capfd):
         check(film.frame(18), "first.png", max=255, share=0)
     with pytest.raises(corda.Error, match="ends in .png"):
         check(film.frame(18), "first.jpg")
+    monkeypatch.setenv("CORDA_UPDATE_GOLDENS", "1")
+    check(film.frame(18), "first.png", film=film)
+    monkeypatch.delenv("CORDA_UPDATE_GOLDENS")
+    other = corda.Film(SCENE, **SMALL, world__drag=0.3)
+    with pytest.raises(AssertionError, match="world.drag is 0.3 and was .*repeat the test: python3 -m pytest .*test_golden_pictures.*; "
+                       "accept it: CORDA_UPDATE_GOLDENS=1 python3 -m pytest"):
+        check(other.frame(18), "first.png", film=other)
+
+
+def test_golden_scenes_are_test_cases(tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", os.path.dirname(os.environ["CORDA_PROGRAM"]) + os.pathsep + os.environ["PATH"])
+    monkeypatch.chdir(tmp_path)
+    text = pathlib.Path(SCENE).read_text()
+    for name, more in (("b", "[golden]\nat = [0.0]\nsize = [64, 48]\n"), ("a/c", "golden.at = [0.1]\n"), ("plain", "")):
+        path = tmp_path / "scenes" / f"{name}.toml"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(more + text if more.startswith("golden.at") else text + more)
+    scenes = corda.testing.golden_scenes("scenes")
+    assert scenes == ["scenes/a/c.toml", "scenes/b.toml"]
+    with pytest.raises(AssertionError, match="missing(.|\n)*repeat: corda golden scenes/b.toml --dir ref\naccept: .*--update"):
+        corda.testing.assert_golden(scenes[1], "ref")
+    for scene in scenes:
+        corda.testing.assert_golden(scene, "ref", "--update")
+        corda.testing.assert_golden(scene, "ref")
+    corda.testing.assert_golden("scenes", "ref", "--stale")
 
 
 def test_stubs_tell_all_names_and_parameters():
@@ -345,13 +370,16 @@ def test_stubs_tell_all_names_and_parameters():
         arguments = node.args
         told = [one.arg for one in arguments.posonlyargs + arguments.args + arguments.kwonlyargs]
         assert told == [name for name, one in inspect.signature(function).parameters.items()
-                        if one.kind is not inspect.Parameter.VAR_KEYWORD]
+                        if one.kind not in (inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL)]
         assert function.__doc__ or function.__name__.startswith("__")
 
     for name in ("compare", "read_png", "write_png"):
         check(getattr(corda, name), names[name])
     of_testing = ast.parse((pathlib.Path(corda.__file__).parent / "testing.pyi").read_text()).body
-    check(corda.testing.assert_matches_golden, of_testing[-1])
+    functions = [node for node in of_testing if isinstance(node, ast.FunctionDef)]
+    assert {node.name for node in functions} == set(corda.testing.__all__)
+    for node in functions:
+        check(getattr(corda.testing, node.name), node)
     of_plot = ast.parse((pathlib.Path(corda.__file__).parent / "plot.pyi").read_text()).body
     plots = {node.name: node for node in of_plot if isinstance(node, ast.FunctionDef)}
     assert set(plots) == set(corda.plot.__all__)

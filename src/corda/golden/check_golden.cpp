@@ -7,6 +7,7 @@
 
 #include "corda/core/file.hpp"
 #include "corda/core/text.hpp"
+#include "corda/film/plan_text.hpp"
 #include "corda/golden/cases.hpp"
 #include "corda/golden/record.hpp"
 #include "corda/media/defs.hpp"
@@ -59,14 +60,42 @@ GoldenOutcome failure(const std::string& message) {
     return {.matches = false, .written = false, .message = message};
 }
 
-GoldenOutcome update(const std::string& path, const Image& drawn, const std::string& why) {
+/// What may have caused a difference from a kept picture: "; world.drag is 0.2 and was 0".
+std::string cause_text(const std::string& path, const Film* film) {
+    const PngInfo info = read_png_info(path);
+    const Provenance made = provenance_in(info);
+    const auto changes =
+        film == nullptr ? std::vector<KeyChange>{} : golden::scene_changes(made, film->scene());
+    if (!changes.empty()) return "; " + changes_text(changes);
+    for (const auto& [keyword, text] : info.text) {
+        const std::string now = fmt::format("corda {}", version());
+        if (keyword == "Software" && text.starts_with("corda ") && text != now)
+            return fmt::format("; {} drew it, and this is {}", text, now);
+    }
+    return film == nullptr || made.scene.empty() ? "" : "; its scene and its version of corda are the same";
+}
+
+/// How to repeat the test, and to accept the picture.
+std::string remedy_text(const std::string& path, const std::string& rerun) {
+    const auto made = golden::provenance_of_file(path);
+    const std::string repeat = rerun.empty() ? "" : "; repeat the test: " + rerun;
+    if (made && made->golden)
+        return repeat + fmt::format("; accept it: corda golden SCENES --dir {} --only {} --update",
+                                    fs::path(path).parent_path().string(), fs::path(path).stem().string());
+    return repeat + "; accept it: CORDA_UPDATE_GOLDENS=1 " + (rerun.empty() ? "with the same test" : rerun);
+}
+
+GoldenOutcome update(const std::string& path, const Image& drawn, const std::string& why, const Film* film) {
     if (const auto made = golden::provenance_of_file(path); made && made->golden)
         return failure(why + "; update it by corda golden --update, which made it");
     if (golden::is_no_png(path))
         return failure(why + "; the file is no PNG and stays; remove it to have the picture written");
     make_folder(fs::path(path).parent_path().string());
     PngInfo info;
-    info.text = {{"Software", fmt::format("corda {}", version())}};
+    if (film != nullptr)
+        info = picture_info(film->scene().name, "", "", provenance_text(provenance_of(film->scene())));
+    else
+        info.text = {{"Software", fmt::format("corda {}", version())}};
     write_png(path, drawn, info, {.force = true});
     return {.matches = true, .written = true, .message = fmt::format("{}: written: {}", path, why)};
 }
@@ -96,15 +125,16 @@ GoldenOutcome check_golden(const Image& drawn, const std::string& name, const Go
         const Difference difference = compare(one, {.image = drawn});
         if (difference.within(options.limits)) return {.matches = true, .written = false, .message = {}};
         if (golden && fs::path(variant).filename() != file) continue;
-        why = fmt::format("differs from '{}': {}", variant,
+        why = fmt::format("differs from '{}': {}{}", variant,
                           difference.same_size
                               ? figures_text(difference)
                               : fmt::format("{}x{} pixels, the golden picture {}x{}", drawn.width(),
-                                            drawn.height(), one.image.width(), one.image.height()));
+                                            drawn.height(), one.image.width(), one.image.height()),
+                          cause_text(variant, options.film));
         golden = std::move(one);
     }
-    if (is_update()) return update(path.string(), drawn, why);
-    if (!golden) why += "; CORDA_UPDATE_GOLDENS=1 writes it";
+    if (is_update()) return update(path.string(), drawn, why, options.film);
+    why += remedy_text(path.string(), options.rerun);
     return failure(why + keep_artifacts(name, folder, drawn, golden));
 }
 

@@ -6,19 +6,29 @@
 #include "corda/golden/compare.hpp"
 
 #pragma GCC visibility push(default)
+namespace corda {
+class Film;
+}  // namespace corda
+
 namespace corda::testing {
 
 /// Where a golden picture is kept, and what may differ from it.
 struct GoldenOptions {
     std::string folder{};       ///< empty: the environment's CORDA_GOLDEN_DIR, or else the current folder
     DifferenceLimits limits{};  ///< none given: pictures must be equal
+    /// The film of the picture. Then an update records its scene in the golden picture, and a failure names
+    /// the keys that have changed since.
+    const Film* film = nullptr;
+    std::string rerun{};  ///< the command that runs this test again, for the message of a failure
 };
 
 /// How a picture compares with a golden one.
 struct GoldenOutcome {
     bool matches = false;
     bool written = false;  ///< an update wrote it
-    std::string message;   ///< why it does not match, and where to see it; what an update wrote
+    /// Why it does not match, how to repeat the test and to accept the picture, and where to see it; what an
+    /// update wrote.
+    std::string message;
 };
 
 /// Compares a picture with NAME.png, and with each NAME.CAUSE.png there is; `name` ends in .png and may begin

@@ -30,7 +30,8 @@ PngInfo to_png_info(GoldenRecord record, const Film& film, double time_s) {
 std::map<std::string, std::string> pixel_values(const Scene& scene) {
     auto all = values_of(scene);
     std::erase_if(all, [](const auto& entry) {
-        constexpr std::array kOfPixels{"video.size", "video.fps", "video.shutter", "video.subframes"};
+        constexpr std::array kOfPixels{"video.size", "video.fps", "video.speed", "video.shutter",
+                                       "video.subframes"};
         return entry.first.starts_with("video.") &&
                std::ranges::find(kOfPixels, entry.first) == kOfPixels.end();
     });

@@ -222,16 +222,19 @@ PYBIND11_MODULE(_corda, module) {
     module.def("write_png", [](const std::string& path, const py::object& picture, bool force) {
         Asking().run([&, image = to_image(picture)] { corda::write_png(path, image, {}, {.force = force}); });
     });
-    module.def("check_golden",
-               [](const py::object& picture, const std::string& name, const std::string& folder,
-                  const std::array<std::optional<double>, 3>& limits) {
-                   const corda::testing::GoldenOptions options{.folder = folder,
-                                                               .limits = {limits[0], limits[1], limits[2]}};
-                   const auto outcome = Asking().run([&, image = to_image(picture)] {
-                       return corda::testing::check_golden(image, name, options);
-                   });
-                   return std::tuple(outcome.matches, outcome.written, outcome.message);
-               });
+    module.def(
+        "check_golden",
+        [](const py::object& picture, const std::string& name, const std::string& folder,
+           const std::array<std::optional<double>, 3>& limits, const PyFilm* film, const std::string& rerun) {
+            const corda::testing::GoldenOptions options{.folder = folder,
+                                                        .limits = {limits[0], limits[1], limits[2]},
+                                                        .film = film == nullptr ? nullptr : &film->film(),
+                                                        .rerun = rerun};
+            const auto outcome = Asking().run([&, image = to_image(picture)] {
+                return corda::testing::check_golden(image, name, options);
+            });
+            return std::tuple(outcome.matches, outcome.written, outcome.message);
+        });
     module.def("read_png", [](const std::string& path) {
         return to_array(Asking().run([&] { return corda::read_png(path); }));
     });

@@ -64,7 +64,8 @@ TEST_F(CheckGolden, MatchesAnyVariant) {
 
 TEST_F(CheckGolden, NamesTheMissingPictureAndTheNewOne) {
     EXPECT_THAT(check_golden(with_dot(1), "no/such.png").message,
-                AllOf(HasSubstr("there is no golden picture"), HasSubstr("CORDA_UPDATE_GOLDENS=1 writes it"),
+                AllOf(HasSubstr("there is no golden picture"),
+                      HasSubstr("accept it: CORDA_UPDATE_GOLDENS=1 with the same test"),
                       HasSubstr("set CORDA_GOLDEN_ARTIFACTS")));
     setenv("CORDA_GOLDEN_ARTIFACTS", folder_.file("out").c_str(), 1);
     EXPECT_THAT(check_golden(with_dot(1), "no/such.png").message, HasSubstr("out/no/such.new.png"));
@@ -97,6 +98,33 @@ TEST_F(CheckGolden, UpdatesItsOwnPictures) {
     EXPECT_TRUE(check_golden(with_dot(7), "new/dot.png").written);
     EXPECT_EQ(read_png(folder_.file("ref/dot.png")), with_dot(7));
     EXPECT_EQ(read_png(folder_.file("ref/new/dot.png")), with_dot(7));
+}
+
+TEST_F(CheckGolden, NamesTheCauseAndTheCommands) {
+    const std::string scene = "schema = 1\n[[rope]]\nhang = { links = 1, length = 1.0 }\n";
+    const Film before(parse_scene(scene, "swing.toml"));
+    const Film now(parse_scene(scene + "[world]\ndrag = 0.2\n", "swing.toml"));
+    setenv("CORDA_UPDATE_GOLDENS", "1", 1);
+    EXPECT_TRUE(check_golden(with_dot(7), "dot.png", {.film = &before}).written);
+    clear();
+    const auto message_of = [&](const corda::testing::GoldenOptions& options) {
+        return check_golden(with_dot(8), folder_.file("ref/dot.png"), options).message;
+    };
+    EXPECT_THAT(message_of({.film = &now, .rerun = "a --test"}),
+                AllOf(HasSubstr("; world.drag is 0.2 and was "), HasSubstr("; repeat the test: a --test; "),
+                      HasSubstr("accept it: CORDA_UPDATE_GOLDENS=1 a --test")));
+    EXPECT_THAT(message_of({.film = &before}), HasSubstr("its scene and its version of corda are the same"));
+    EXPECT_THAT(corda::testing::rerun_command(),
+                ::testing::EndsWith(" --gtest_filter=CheckGolden.NamesTheCauseAndTheCommands"));
+    PngInfo older;
+    older.text = {{"Software", "corda 0.0.1"}};
+    write_png(folder_.file("ref/dot.png"), with_dot(7), older, {.force = true});
+    EXPECT_THAT(message_of({}), HasSubstr("; corda 0.0.1 drew it, and this is corda 0.1.0"));
+    older.text = {
+        {kProvenanceKeyword,
+         provenance_text({.corda = "0.1.0", .name = "dot", .golden = GoldenRecord{.renderer = "llvmpipe"}})}};
+    write_png(folder_.file("ref/dot.png"), with_dot(7), older, {.force = true});
+    EXPECT_THAT(message_of({}), HasSubstr("ref --only dot --update"));
 }
 
 TEST_F(CheckGolden, LeavesPicturesOfTheCommandAlone) {

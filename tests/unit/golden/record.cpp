@@ -50,6 +50,7 @@ TEST(GoldenRecords, NameTheKeyOfTheSceneThatChanged) {
         {{"world.drag=0.5"}, {}, "world.drag is 0.5 and was 0"},
         {{"video.crf=30"}, {}, ""},  // affects videos only
         {{"video.fps=50"}, {}, "video.fps is 50 and was 60"},
+        {{"video.speed='1/2'"}, {}, "video.speed is \"1/2\" and was 1"},
         {{"video.shutter=0.5"}, {}, "video.shutter is 0.5 and was 0"},
         {{"rope[0].hang.links=6", "world.drag=0.5"},
          {"rope[0].hang={links=6,length=1,angle_deg=40}", "world.dr=1"},

@@ -3,6 +3,8 @@ from os import PathLike
 import numpy as np
 from numpy.typing import NDArray
 
+from . import Film
+
 def assert_matches_golden(
     picture: NDArray[np.uint8] | str | PathLike[str],
     name: str | PathLike[str],
@@ -11,4 +13,7 @@ def assert_matches_golden(
     max: float | None = None,
     mean: float | None = None,
     share: float | None = None,
+    film: Film | None = None,
 ) -> None: ...
+def golden_scenes(folder: str | PathLike[str]) -> list[str]: ...
+def assert_golden(scene: str | PathLike[str], references: str | PathLike[str], *options: str) -> None: ...
