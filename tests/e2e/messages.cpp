@@ -221,6 +221,20 @@ TEST_F(Messages, WarnOfTextsThatNoFrameShows) {
     EXPECT_THAT(told("0.9"), Not(HasSubstr("overlay.texts")));
 }
 
+TEST_F(Messages, WarnOfEventsAfterTheEnd) {
+    const auto told = [&](const std::string& setting) {
+        return run_corda({"plan", scene_, "--set", setting}).err;
+    };
+    EXPECT_THAT(
+        told("rope[0].cut=[{link=0,t=0.5},{link=1,t=1.0}]"),
+        HasSubstr("scene.toml: rope[0].cut[1].t: 1 s is not before the end of the film at 1 s, so that "
+                  "nothing happens; give an earlier time, or a longer world.duration"));
+    EXPECT_THAT(told("rope[0].release=[{pin=0,t=3}]"), HasSubstr("rope[0].release[0].t: 3 s is"));
+    EXPECT_THAT(told("rope[0].moves=[{pin=0,path=[{t=2,by=[0,0]},{t=3,by=[1,0]}]}]"),
+                HasSubstr("rope[0].moves[0].path[0].t: 2 s is"));
+    EXPECT_THAT(told("rope[0].cut=[{link=0,t=0.9}]"), Not(HasSubstr("end of the film")));
+}
+
 TEST_F(Messages, WarnOncePerFilmOfPlotsWithoutRoom) {
     for (const std::vector<std::string>& command :
          std::vector<std::vector<std::string>>{{"still", scene_, "--at", "0,0.1", "-o", folder_.file("a")},

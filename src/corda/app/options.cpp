@@ -23,6 +23,34 @@ void warn_of_unseen_texts(const Console& console, const Scene& scene) {
     }
 }
 
+/// Warns of pins let go, links cut and paths of pins that begin when the film is over: no error, as above.
+void warn_of_late_events(const Console& console, const Scene& scene) {
+    const double end_s = scene.world.duration_s;
+    std::string first;
+    int late = 0;
+    const auto look = [&](const std::string& key, double time_s) {
+        if (time_s >= end_s && late++ == 0) first = fmt::format("{}: {} s is", key, time_s);
+    };
+    const auto look_at_body = [&](const std::string& body, const auto& def) {
+        for (std::size_t i = 0; i < def.releases.size(); ++i)
+            look(fmt::format("{}.release[{}].t", body, i), def.releases[i].time_s);
+        for (std::size_t i = 0; i < def.cuts.size(); ++i)
+            look(fmt::format("{}.cut[{}].t", body, i), def.cuts[i].time_s);
+        for (std::size_t i = 0; i < def.moves.size(); ++i)
+            if (const auto& path = def.moves[i].path; !path.empty())
+                look(fmt::format("{}.moves[{}].path[0].t", body, i), path.front().time_s);
+    };
+    for (std::size_t i = 0; i < scene.ropes.size(); ++i)
+        look_at_body(fmt::format("rope[{}]", i), scene.ropes[i]);
+    for (std::size_t i = 0; i < scene.nets.size(); ++i)
+        look_at_body(fmt::format("net[{}]", i), scene.nets[i]);
+    if (late == 0) return;
+    console.warning(fmt::format(
+        "{}: {} not before the end of the film at {} s, so that nothing happens{}; give an earlier time, or "
+        "a longer world.duration",
+        scene.source, first, end_s, late == 1 ? "" : fmt::format(", as with {} more", late - 1)));
+}
+
 /// Whoever made the file must not decide how much memory this machine gives.
 void check_size_from_file(const SceneOptions& options, const VideoDef& video) {
     constexpr std::int64_t kMaxUnaskedPx = std::int64_t{1} << 25;
@@ -224,6 +252,7 @@ Loaded load(const Console& console, const SceneOptions& options) {
     if (!options.from.empty()) check_size_from_file(options, loaded.scene.video);
     if (!options.positions.empty()) give_motion(loaded.scene, read_positions(options.positions));
     warn_of_unseen_texts(console, loaded.scene);
+    warn_of_late_events(console, loaded.scene);
     return loaded;
 }
 

@@ -185,7 +185,8 @@ std::string reason_text(const BodyPlan& plan) {
         case PlanReason::kExact:
             return "it has the smallest error for chains, nets of rigid bars and bodies that stretch";
         case PlanReason::kGraph:
-            return "it keeps the bars of closed ropes and nets at their lengths";
+            return "it keeps bars at their lengths where method exact cannot: in closed ropes, and in most "
+                   "nets";
         case PlanReason::kDependent:
             return "bars depend on each other at the start in such a way that no method can tell the true "
                    "motion; there is no estimate of the error";

@@ -15,10 +15,13 @@
 namespace corda::scene {
 namespace {
 
-/// For a key that another table has: "it is a key of video".
-std::string other_home(std::string_view name) {
+/// For a key that another table has, first one in the table of this section: "it is a key of video".
+std::string other_home(std::string_view name, std::string_view section) {
     const auto& keys = all_keys();
-    const auto key = std::ranges::find(keys, name, &Key::name);
+    const std::string inner = dotted(section, "");
+    auto key = std::ranges::find_if(
+        keys, [&](const Key& one) { return one.name == name && one.section.starts_with(inner); });
+    if (key == keys.end()) key = std::ranges::find(keys, name, &Key::name);
     if (key == keys.end()) return "";
     return fmt::format("it is a key of {}", key->section.empty() ? "the top level" : key->section);
 }
@@ -27,9 +30,23 @@ std::string other_home(std::string_view name) {
 struct Wish {
     std::string_view names;  ///< words between spaces
     std::string_view instead;
-    std::string_view section = {};  ///< the only one that it is tried in; empty: any
+    std::string_view section = {};  ///< the end of those it is tried in; empty: any but those of events
+    std::string_view key = {};      ///< the one that is meant; empty: perhaps none of this table
 };
 constexpr Wish kWishes[] = {
+    {" pins pinned particle particles index node ",
+     "pin is the index of one pinned particle; give a table for each", ".moves", "pin"},
+    {" pins pinned particle particles index node ",
+     "pin is the index of one pinned particle; give a table for each", ".release", "pin"},
+    {" to by target position at displacement distance ",
+     "path moves it from key to key: path = [{ t = 0.0, by = [0.0, 0.0] }, { t = 1.0, by = [1.0, 0.0] }]",
+     ".moves"},
+    {" to at position target x y displacement distance ",
+     "by is the displacement from the place in the scene, in m; t is the time in s", ".moves.path", "by"},
+    {" links bar bars segment edge index ", "link is the index of one link; give a table for each", ".cut",
+     "link"},
+    {" at time when from s t_s ", "t is the time in s", ".release", "t"},
+    {" at time when from s t_s ", "t is the time in s", ".cut", "t"},
     {" width height ", "video.size is [width, height] in pixels", "video"},
     {" frames length ", "world.duration in s and video.fps give the number of frames", "video"},
     {" time length ", "world.duration is the duration in s", "world"},
@@ -81,13 +98,15 @@ constexpr Wish kWishes[] = {
     {" trail trails trace ", "style.trail_s is the time in s for which the path of a particle stays"},
 };
 
-std::string_view instead_of(std::string_view name, std::string_view section) {
+const Wish* wish_of(std::string_view name, std::string_view section) {
     const std::string word = fmt::format(" {} ", lower(name));
+    const bool is_of_events = section.find(".moves") != std::string_view::npos ||
+                              section.ends_with(".release") || section.ends_with(".cut");
     const auto* const found = std::ranges::find_if(kWishes, [&](const Wish& wish) {
         return wish.names.find(word) != std::string_view::npos &&
-               (wish.section.empty() || wish.section == section);
+               (wish.section.empty() ? !is_of_events : section.ends_with(wish.section));
     });
-    return found == std::end(kWishes) ? std::string_view{} : found->instead;
+    return found == std::end(kWishes) ? nullptr : found;
 }
 
 /// "1,5" as "1.5"; empty for a text that is no number with a comma, or with a sign that is not ASCII.
@@ -314,16 +333,18 @@ class TableChecker {
                 problems_->add(key.source(), dotted(path, name), "was removed", std::string(instead));
                 continue;
             }
-            if (const std::string_view instead = instead_of(key.str(), section); !instead.empty()) {
+            if (const Wish* const wish = wish_of(key.str(), section)) {
+                if (!wish->key.empty()) problems_->add_misspelt(dotted(path, wish->key));
                 problems_->add(key.source(), dotted(path, name), fmt::format("unknown key \"{}\"", name),
-                               std::string(instead));
+                               std::string(wish->instead));
                 continue;
             }
             std::vector<std::string_view> known;
             for (const Key& one : keys_of(section)) known.push_back(one.name);
             const auto meant = nearest(key.str(), known);
             if (meant) problems_->add_misspelt(dotted(path, *meant));
-            std::string hint = meant ? fmt::format("did you mean \"{}\"?", *meant) : other_home(key.str());
+            std::string hint =
+                meant ? fmt::format("did you mean \"{}\"?", *meant) : other_home(key.str(), section);
             if (hint.empty()) hint = fmt::format("valid keys: {}", fmt::join(known, ", "));
             problems_->add(key.source(), dotted(path, name), fmt::format("unknown key \"{}\"", name),
                            std::move(hint));
@@ -363,7 +384,7 @@ class TableChecker {
                       const std::string& path) const {
         toml::array* const list = node.as_array();
         if (list == nullptr) return fail(key, node, path, "a list");
-        if (list->empty()) {
+        if (list->empty() && section.find('.') == std::string::npos) {  // a scene has bodies
             problems_->add(node, path, "the list is empty", remedy(key));
             return false;
         }

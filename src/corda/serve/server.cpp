@@ -287,7 +287,9 @@ Server::Server(const ServerDef& def, Handler handler) : impl_(std::make_unique<I
     for (const std::string& host : def.hosts)
         if (!is_host(host)) throw_usage("--host {}: is no name such as hub.example.org", printable(host));
     if (!def.token.empty() && !is_token(def.token))
-        throw_usage("--token: is not 16 to {} letters, digits, - and _", kMaxTokenBytes);
+        throw_usage(
+            "--token: {} bytes are not 16 to {} letters, digits, - and _; give such a text, or leave it out",
+            def.token.size(), kMaxTokenBytes);
     impl_->policy = policy_for(def.hosts);
     for (const std::string& host : def.hosts)
         if (!place.is_local) impl_->names.push_back(name_of(host));

@@ -64,7 +64,14 @@ moves = [{ pin = 0, path = [{ t = 0, by = [0, 0] }] }, { pin = 0, path = [{ t = 
 release = [{ pin = 1, t = 1 }] | 4:20 rope[0].release[0].pin | particle 1 is not pinned; add it to pinned, or give the index of a pinned one | pin = 1 => pin = 0 ; + pinned = [1]
 release = [{ pin = 0, t = 1 }, { pin = 0, t = 2 }] | 4:40 rope[0].release[1].pin | particle 0 is let go already; remove one | , { pin = 0, t = 2 } =>
 release = [{ pin = 0, t = -1 }] | 4:27 rope[0].release[0].t | -1 is not >= 0 | t = -1 => t = 1
-release = [] | 4:11 rope[0].release | the list is empty; give release = [{ ... }], a table for each
+release = [{ pins = [0], t = 1 }] | 4:14 rope[0].release[0].pins | pin is the index of one pinned particle; give a table for each
+release = [{ pin = 0, at = 1 }] | 4:23 rope[0].release[0].at | t is the time in s | at = 1 => t = 1
+cut = [{ links = [1], t = 1 }] | 4:10 rope[0].cut[0].links | link is the index of one link; give a table for each
+cut = [{ link = 1, at = 1 }] | 4:20 rope[0].cut[0].at | t is the time in s | at = 1 => t = 1
+moves = [{ pins = [0], path = [{ t = 0, by = [0, 0] }] }] | 4:12 rope[0].moves[0].pins | pin is the index of one pinned particle
+moves = [{ pin = 0, to = [1, 0] }] | 4:10 rope[0].moves[0] | path moves it from key to key: path = [{ t = 0.0, by = [0.0, 0.0] }, | to = [1, 0] => path = [{ t = 0.0, by = [0.0, 0.0] }, { t = 1.0, by = [1.0, 0.0] }]
+moves = [{ pin = 0, amplitude = [1, 0], frequency = 1 }] | 4:10 rope[0].moves[0] | it is a key of rope.moves.waves
+moves = [{ pin = 0, path = [{ t = 0, to = [0, 0] }] }] | 4:38 rope[0].moves[0].path[0].to | by is the displacement from the place in the scene, in m | to = [0, 0] => by = [0, 0]
 release = [{ pin = 0, t = inf }] | 4:27 rope[0].release[0].t | inf
 release = [{ pin = 0 }] | 4:12 rope[0].release[0].t | missing; give the time from which it is free | pin = 0 => pin = 0, t = 1
 release = [{ pin = 9, t = 1 }] | 4:20 rope[0].release[0].pin | 9 is out of range; the rope has particles
@@ -250,7 +257,6 @@ method = "rattle"\ndelta = 0.1 | 5:9 solver.delta | remove it, or give world.dra
 method = "exact"\nforce = [0, 1] | 5:9 solver.force | remove it, or give world.gravity | force = [0, 1] => ; force = [0, 1] => [world]\ngravity = [0, 1]
 method = "relaxation"\n[style]\narrows = "tension" | 6:10 style.arrows | knows no tensions; give "velocity" or "weight", or another solver.method | tension => velocity ; tension => weight ; relaxation => exact
 method = "relaxation"\n[style]\ncolor_by = "tension" | 6:12 style.color_by | knows no tensions; give "speed" or "strain", or another solver.method | tension => speed ; tension => strain ; relaxation => exact
-bodies = [] | 4:10 solver.bodies | the list is empty; give one or more [[solver.bodies]]
 ropes = [0] | 4:1 solver.ropes | a key of solver.bodies
 @solver.bodies
 method = "exact" | 3:1 solver.bodies | this is a table, not a list
