@@ -191,7 +191,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     report_format(console, scene, output);
 
     const Film film = make_film(console, scene, options.film, "simulate");
-    const std::int64_t count = output.end() - output.first();
+    const std::int64_t count = output.video().frames();
     console.info(
         fmt::format("{}: {}, method {}; {} of {}x{} at {} per second{}", scene.name,
                     system_text(film.system()), method_names(film.plan()), counted(count, "frame"),

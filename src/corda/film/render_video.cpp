@@ -84,18 +84,23 @@ struct Drawn {
 /// Draws frames of a film on the thread that made it, ready for a VideoFile.
 class FrameDrawer {
   public:
-    FrameDrawer(const Film& film, const media::Format& format, std::int64_t first)
-        : film_(film), canvas_(film.context_def()), maker_(format, first, picture_info_of(film.scene())) {}
+    FrameDrawer(const Film& film, const media::CheckedVideo& video)
+        : film_(film),
+          last_(video.end - 1),
+          canvas_(film.context_def()),
+          maker_(video.format, video.first, picture_info_of(film.scene())) {}
 
     Drawn draw(std::int64_t k) {
         check_cancelled();
+        const double time_s = film_.time_s(std::min(k, last_));
         const auto [damage, is_empty] =
-            film::paint(film_.look(), film_.motion(), film_.time_s(k), film_.scene().video.shutter, *canvas_);
+            film::paint(film_.look(), film_.motion(), time_s, film_.scene().video.shutter, *canvas_);
         return {maker_.make(k, canvas_->image(), damage), is_empty};
     }
 
   private:
     const Film& film_;
+    std::int64_t last_;  ///< the frame that later ones repeat
     render::CanvasUse canvas_;
     media::FrameMaker maker_;
 };
@@ -121,8 +126,8 @@ bool draw_on_threads(const Film& film, const media::CheckedVideo& video, int job
     const std::int64_t length = block_length(video.def, jobs);
     const std::int64_t blocks = (std::ssize(frames) + length - 1) / length;
     const auto new_maker = [&] {
-        return [&, drawer = std::make_shared<FrameDrawer>(film, video.format, video.first)](
-                   std::int64_t number, const OrderedWorkers<Block>& all) {
+        return [&, drawer = std::make_shared<FrameDrawer>(film, video)](std::int64_t number,
+                                                                        const OrderedWorkers<Block>& all) {
             const CancelScope running([&all] { return !all.is_stopped(); });
             Block block;
             const std::int64_t end = std::min((number + 1) * length, std::ssize(frames));
@@ -149,7 +154,7 @@ void write_frames(const Film& film, const media::CheckedVideo& video, const OnPr
     const CancelScope progress([&] { report_progress(on_progress, drawn, total); });
     const auto take = [&](Drawn one) {
         check_cancelled();
-        if (one.is_empty) note_empty(film.time_s(one.frame.number), result);
+        if (one.is_empty) note_empty(film.time_s(std::min(one.frame.number, video.end - 1)), result);
         file.add(std::move(one.frame));
         ++result.frames;
     };
@@ -158,10 +163,15 @@ void write_frames(const Film& film, const media::CheckedVideo& video, const OnPr
     if (jobs > 1 && draw_on_threads(film, video, jobs, drawn, take)) return;
     std::optional<FrameDrawer> drawer;
     for (const std::int64_t k : video.to_draw) {
-        if (!drawer) drawer.emplace(film, video.format, video.first);
+        if (!drawer) drawer.emplace(film, video);
         take(drawer->draw(k));
         ++drawn;
     }
+}
+
+/// How often the last of a film's frames is repeated in an output that ends with it.
+std::int64_t held_frames(const VideoDef& def, const media::Format& format) {
+    return format.ending->kind == media::FileKind::kPictures ? 0 : def.held_frames();
 }
 
 /// Refuses a transparent ground in a format without alpha, which would show it black.
@@ -224,6 +234,7 @@ CheckedOutput check_render(const Scene& scene, const std::string& path, const Re
                                                            .force = def.force,
                                                            .resume = def.resume},
                                                           input, !is_opaque(scene));
+    if (end == count) video.held = held_frames(scene.video, video.format);
     check_ground(scene, video.format);
     media::check_threads(*video.format.codec);
     video.to_draw = media::frames_to_draw(video, picture_info_of(scene), [&](const PngInfo& found) {
@@ -268,18 +279,19 @@ Rendered render_video(const Film& film, const CheckedOutput& output, const OnPro
 
 std::vector<std::string> video_files(const Film& film, const std::string& name) {
     const VideoDef& def = film.scene().video;
-    const media::CheckedVideo video{.path = name,
-                                    .def = def,
-                                    .format = media::find_format(name, def, !is_opaque(film.scene())),
-                                    .end = film.frame_count()};
+    media::CheckedVideo video{.path = name,
+                              .def = def,
+                              .format = media::find_format(name, def, !is_opaque(film.scene())),
+                              .end = film.frame_count()};
+    video.held = held_frames(def, video.format);
     check_ground(film.scene(), video.format);
     std::vector<std::string> files;
     OutputFile output{OutputFile::InMemory()};
     std::optional<media::TrackWriter> track;
     if (video.format.ending->kind == media::FileKind::kVideo)
         track.emplace(video, metadata(film, 0, video.end), output);
-    FrameDrawer drawer(film, video.format, 0);
-    for (std::int64_t k = 0; k < video.end; ++k) {
+    FrameDrawer drawer(film, video);
+    for (std::int64_t k = 0; k < video.frames(); ++k) {
         media::ReadyFrame frame = drawer.draw(k).frame;
         if (track)
             track->add(std::move(frame));

@@ -43,6 +43,7 @@ struct EncoderDef {
 struct VideoDef {
     static constexpr int kMaxSubframes = 64;
     static constexpr int kMaxLoop = 65535;
+    static constexpr double kMaxHoldS = 3600.0;
 
     int width_px = 1920;  ///< see is_picture_size(); even for 4:2:0
     int height_px = 1080;
@@ -57,6 +58,9 @@ struct VideoDef {
     int subframes = 16;  ///< 2 .. kMaxSubframes: of how many pictures a blurred one is the mean
     /// How often a GIF plays, 0 .. kMaxLoop; 0: for ever.
     int loop = 0;
+    /// 0 .. kMaxHoldS: how many seconds the last picture of the whole motion stays at the end of a video, by
+    /// frames that repeat it; not of a sequence of pictures.
+    double hold_s = 0.0;
     EncoderDef encoder;
 
     /// Gives the longer side this length, and keeps the shape.
@@ -65,6 +69,9 @@ struct VideoDef {
         for (int* const px : {&width_px, &height_px})
             *px = std::max(1, static_cast<int>(std::lround(scale * *px)));
     }
+
+    /// The frames that repeat the last one.
+    [[nodiscard]] std::int64_t held_frames() const { return std::llround(hold_s * fps.per_second()); }
 
     /// Frames per second of the scene: fps / speed. Requires that is_rate().
     [[nodiscard]] FrameRate scene_rate() const { return FrameRate(scene_fraction()); }

@@ -89,6 +89,25 @@ TEST_F(RenderVideo, WritesEveryFrameOnce) {
     EXPECT_THAT(folder_.files(), ElementsAre("a.mp4"));
 }
 
+TEST_F(RenderVideo, HoldsTheLastPictureAtTheEnd) {
+    Scene scene = parse_scene(kVideoRope, "rope.toml");
+    scene.video.encoder.preset.clear();
+    scene.video.hold_s = 0.5;
+    scene.video.encoder.jobs = 2;
+    const Film film(scene);
+    EXPECT_EQ(film.frame_count(), 20);
+    for (const char* const name : {"a.mp4", "a.gif", "a.mkv"})
+        EXPECT_EQ(render_video(film, file(name)).frames, 30) << name;
+    EXPECT_EQ(render_video(film, file("b.mp4"), range(3, 20)).frames, 27);
+    EXPECT_EQ(render_video(film, file("c.mp4"), range(3, 19)).frames, 16);  // not the end
+    EXPECT_EQ(render_video(film, file("%d.png")).frames, 20);
+    EXPECT_EQ(video_files(film, "a.mp4").front(), test::read_file(file("a.mp4")));
+    const auto extracted = test::run_shell(
+        "cd " + test::quoted(folder_.path()) +
+        " && ffmpeg -v error -i a.mkv -f framemd5 - | tail -11 | cut -d, -f6 | sort -u | wc -l");
+    EXPECT_EQ(std::stoi(extracted.out), 1) << extracted.err;  // the last frame and its repetitions
+}
+
 TEST_F(RenderVideo, CountsFramesOfAGifTwiceAndCanBeStoppedAnyTime) {
     Scene scene = parse_scene(kVideoRope, "rope.toml");
     scene.video.encoder.preset.clear();

@@ -301,6 +301,9 @@ Format find_format(std::string_view path, const VideoDef& def, bool is_transpare
     format.has_alpha = has_alpha_plane(format.pixel_format);
     if (format.ending->kind == FileKind::kAnimation && !def.encoder.codec.empty())
         throw_usage("'{}' cannot hold the codec '{}'; leave it out", path, def.encoder.codec);
+    if (def.loop != 0 && format.ending->kind != FileKind::kAnimation)
+        throw_usage("video.loop = {}: {} does not say how often it plays; leave it out, or write a .gif",
+                    def.loop, format.words());
     check_size_for(format, def);
     check_preset(format, def.encoder);
     check_crf(format, def.encoder);

@@ -220,7 +220,7 @@ CheckedVideo check_video_output(CheckedVideo video, const std::string& input, bo
 std::vector<std::int64_t> frames_to_draw(const CheckedVideo& video, const PictureInfo& info,
                                          const std::function<std::string(const PngInfo&)>& difference_of) {
     std::vector<std::int64_t> frames;
-    for (std::int64_t k = video.first; k < video.end; ++k) {
+    for (std::int64_t k = video.first; k < video.first + video.frames(); ++k) {
         check_cancelled();
         const bool is_kept =
             video.resume && has_picture(picture_name(video.path, k), info(k), video.force, difference_of);

@@ -19,18 +19,20 @@
 
 namespace corda::media {
 
-/// A video output that check_video_output() has accepted: the frames first <= k < end of a film.
+/// A video output that check_video_output() has accepted: the frames first <= k < end of a film, the last of
+/// which is repeated as frames `end` and on.
 struct CheckedVideo {
     std::string path{};
     VideoDef def{};
     Format format{};
     std::int64_t first = 0;
     std::int64_t end = 1;
+    std::int64_t held = 0;                ///< how often it is repeated
     bool force = false;                   ///< replace what is there
     bool resume = false;                  ///< of pictures: keep those that are there and belong to the film
     std::vector<std::int64_t> to_draw{};  ///< see frames_to_draw()
 
-    [[nodiscard]] std::int64_t frames() const { return end - first; }
+    [[nodiscard]] std::int64_t frames() const { return end - first + held; }
 };
 
 /// Checks a video, whose format it fills in, before any work is done: everything that check_video_def,

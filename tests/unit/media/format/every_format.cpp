@@ -11,6 +11,7 @@
 #include "corda/media/format/format.hpp"
 #include "support/command.hpp"
 #include "support/decode_rgba.hpp"
+#include "support/failure.hpp"
 #include "support/probe.hpp"
 #include "unit/media/video_support.hpp"
 
@@ -228,6 +229,8 @@ TEST_F(Video, AnAnimationPlaysAsOftenAsAsked) {
     EXPECT_TRUE(has(bytes_of(".gif", 0), "NETSCAPE2.0\x03\x01\0\0"s));
     EXPECT_TRUE(has(bytes_of(".gif", 3), "NETSCAPE2.0\x03\x01\x02\0"s));  // repetitions
     EXPECT_FALSE(has(bytes_of(".gif", 1), "NETSCAPE2.0"));
+    EXPECT_EQ(test::code_of([&] { std::ignore = bytes_of(".mp4", 3); }),
+              ExitCode::kUsage);  // it says nothing of that
 }
 
 TEST_F(Video, AGifOfManyColoursHasTheNearest) {
