@@ -255,6 +255,31 @@ TEST_F(Figures, HaveTheirSizeInPrint) {
         EXPECT_THAT(info.out, HasSubstr("Page size:       240.945 x 135.419 pts")) << info.out;
         EXPECT_THAT(info.out, HasSubstr("Title:           scene"));
     }
+    const auto size_of_letters = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"still",
+                                       scene_,
+                                       "--at",
+                                       "0",
+                                       "--width-mm",
+                                       "85",
+                                       "--force",
+                                       "-o",
+                                       folder_.file("a.svg"),
+                                       "--set",
+                                       "overlay.time=true"};
+        words.insert(words.end(), more.begin(), more.end());
+        EXPECT_EQ(run_corda(words).exit_code, 0);
+        return test::read_file(folder_.file("a.svg"));
+    };
+    const std::string by_default = size_of_letters({});
+    EXPECT_EQ(size_of_letters({"--font-pt", "8"}), by_default);
+    EXPECT_EQ(size_of_letters({"--set", "overlay.text_px=40"}), size_of_letters({"--font-pt", "9.6"}));
+    EXPECT_NE(size_of_letters({"--font-pt", "9.6"}), by_default);
+    const auto too_large =
+        run_corda({"still", scene_, "--at", "0", "-o", png, "--font-pt", "90", "--ppi", "600"});
+    EXPECT_EQ(too_large.exit_code, 2);
+    EXPECT_THAT(too_large.err,
+                HasSubstr("--font-pt 90: is 750 pixels at 600 per inch, not 4 .. 400; choose another --ppi"));
     const auto both =
         run_corda({"still", scene_, "--at", "0", "-o", png, "--width-mm", "85", "--size", "64x64"});
     EXPECT_EQ(both.exit_code, 2);

@@ -64,6 +64,10 @@ TEST_F(ProvenanceOfFiles, FiguresAreReproducedByteForByte) {
     run({"strobe", scene_, "--at", "0,0.21,0.4", "--width-mm", "20", "-o", folder().file("c.png")});
     run({"strobe", "--from", folder().file("c.png"), "-o", folder().file("d.png")});
     expect_same("c.png", "d.png");
+    run({"sheet", scene_, "--frame", "0:4", "--width-mm", "40", "--font-pt", "5", "-o",
+         folder().file("h.png")});
+    run({"sheet", "--from", folder().file("h.png"), "-o", folder().file("i.png")});
+    expect_same("h.png", "i.png");
     run({"sheet", scene_, "--frame", "0:4", "--size", "300x100", "-o", folder().file("e.png")});
     run({"sheet", "--from", folder().file("e.png"), "-o", folder().file("f.png")});
     expect_same("e.png", "f.png");
@@ -79,14 +83,14 @@ TEST_F(ProvenanceOfFiles, AuthoredVideosAreReproducedByteForByte) {
         "[[rope]]\nhang = { particles = 4, length = 1.0, angle_deg = 30 }\nlabel = \"8 kg\"\n"
         "copies = { count = 3, angle_deg = 5.0 }\n[camera]\npath = [{ t = 0.0 }, { t = 0.2, height = 1.0 }]\n"
         "[overlay]\ntexts = [{ text = \"released\", to = 0.1 }]\n"
-        "[video]\nsize = [64, 48]\nfps = 30\nspeed = \"1/2\"\nloop = 2\n");
+        "[video]\nsize = [64, 48]\nfps = 30\nspeed = \"1/2\"\nhold = 0.2\n");
     run({"render", authored, "--frames", "2:9", "-o", folder().file("a.mp4")});
     run({"render", "--from", folder().file("a.mp4"), "-o", folder().file("b.mp4")});
     expect_same("a.mp4", "b.mp4");
     EXPECT_EQ(test::probe(folder().file("a.mp4")).frames, 7);
     const auto portrait =
         run_corda({"render", authored, "--size", "portrait", "-o", folder().file("c.mp4"), "--dry-run"});
-    EXPECT_THAT(portrait.err, HasSubstr("12 frames of 1080x1920 at 30 per second, at speed 1/2"));
+    EXPECT_THAT(portrait.err, HasSubstr("18 frames of 1080x1920 at 30 per second, at speed 1/2"));
     const auto unknown = run_corda({"render", authored, "--size", "wide", "-o", folder().file("c.mp4")});
     EXPECT_EQ(unknown.exit_code, 2);
     EXPECT_THAT(unknown.err, HasSubstr("4k, 1080p, square or portrait"));

@@ -21,6 +21,7 @@
 #include "corda/core/timeline.hpp"
 #include "corda/film/film.hpp"
 #include "corda/film/plan_text.hpp"
+#include "corda/scene/schema.hpp"
 #include "corda/view/overlay.hpp"
 #include "interrupt.hpp"
 
@@ -29,6 +30,8 @@ namespace {
 
 constexpr double kScreenPpi = 96.0;
 constexpr double kPrintPpi = 300.0;
+constexpr double kPrintPt = 8.0;
+constexpr double kPointsPerInch = 72.0;
 
 /// Options of `still`, `strobe` and `sheet`.
 struct PictureOptions {
@@ -40,6 +43,7 @@ struct PictureOptions {
     std::string output;
     std::optional<double> width_mm;
     std::optional<double> pixels_per_inch;
+    std::optional<double> font_pt;
     double shutter = 0.0;
     int columns = 0;  ///< 0: what fills the picture best
     bool fail_empty = false;
@@ -157,7 +161,9 @@ void take_record(const std::optional<PictureOrigin>& record, Request& request) {
     film_times_s = record->film_times_s;
     if (options.columns == 0) options.columns = record->columns;
     if (options.shutter == 0.0) options.shutter = is_frame ? scene.video.shutter : record->shutter;
-    if (!options.pixels_per_inch && !options.width_mm) options.pixels_per_inch = record->pixels_per_inch;
+    if (options.width_mm) return;
+    if (!options.pixels_per_inch) options.pixels_per_inch = record->pixels_per_inch;
+    if (!options.font_pt) options.font_pt = record->font_pt;
 }
 
 /// Gives the scene the picture size of `--width-mm`.
@@ -176,11 +182,37 @@ void set_width(const PictureOptions& options, Scene& scene) {
     set_size(scene, static_cast<int>(width_px), static_cast<int>(height_px));
 }
 
+double pixels_per_inch(const Request& request) {
+    const PictureOptions& options = request.options;
+    return options.width_mm ? request.scene.video.width_px * kMmPerInch / *options.width_mm
+                            : options.pixels_per_inch.value_or(kScreenPpi);
+}
+
+/// Gives the scene letters of `--font-pt`; in print, unless the scene says their size, of kPrintPt.
+void set_font(Request& request) {
+    std::optional<double>& font_pt = request.options.font_pt;
+    std::optional<double>& text_px = request.scene.overlay.text_px;
+    const double ppi = pixels_per_inch(request);
+    const scene::Range& range = scene::find_key("overlay", "text_px")->type.range;
+    const auto is_within = [&](double px) { return px >= range.low && px <= range.high; };
+    if (request.options.width_mm && !font_pt && !text_px && is_within(kPrintPt / kPointsPerInch * ppi))
+        font_pt = kPrintPt;
+    if (!font_pt) return;
+    const double px = *font_pt / kPointsPerInch * ppi;
+    if (text_px == px) return;  // of the file of --from
+    if (!is_within(px))
+        throw_usage("--font-pt {}: is {:.4g} pixels at {:.4g} per inch, not {} .. {}; choose another --ppi",
+                    *font_pt, px, ppi, range.low, range.high);
+    text_px = px;
+    request.scene.settings.push_back(fmt::format("overlay.text_px={}", px));
+}
+
 Request request_of(const Console& console, const PictureOptions& options, const char* command) {
     Loaded loaded = load(console, options.scene);
     Request request{command, options, std::move(loaded.scene), {}, {}};
     take_record(loaded.origin.picture, request);
     if (options.width_mm) set_width(options, request.scene);
+    set_font(request);
     request.times = requested_times(request.options, request.scene);
     return request;
 }
@@ -217,13 +249,13 @@ PngInfo png_info(const Request& request, const Picture& picture, PictureOrigin o
             origin.times, [&](const PictureTime& time) { return !time.frame && time.time_s == time_s; });
     });
     if (!are_origins) origin.film_times_s = all_s;
-    const double ppi = options.width_mm ? scene.video.width_px * kMmPerInch / *options.width_mm
-                                        : options.pixels_per_inch.value_or(kScreenPpi);
+    const double ppi = pixels_per_inch(request);
+    origin.font_pt = options.font_pt;
     if (ppi != kScreenPpi) origin.pixels_per_inch = ppi;
     // A still of a frame has the bytes of the frame, whose number is elsewhere in the record.
     const bool is_frame = command == "still" && origin.times.front().frame &&
                           options.shutter == scene.video.shutter && origin.film_times_s.empty() &&
-                          !origin.pixels_per_inch;
+                          !origin.pixels_per_inch && !origin.font_pt;
     if (!is_frame) made.picture = std::move(origin);
     PngInfo info = picture_info(scene.name, times_text, frames, provenance_text(std::move(made)));
     info.pixels_per_inch = ppi;
@@ -381,7 +413,8 @@ ExitCode draw_strobe(const Console& console, const PictureOptions& options) {
 ExitCode draw_sheet(const Console& console, const PictureOptions& options) {
     const Request request = request_of(console, options, "sheet");
     Scene cell = request.scene;
-    const FigureDef def = contact_sheet(cell, times_of(request.times), request.options.columns);
+    const auto text_px = request.options.font_pt ? request.scene.overlay.text_px : std::nullopt;
+    const FigureDef def = contact_sheet(cell, times_of(request.times), request.options.columns, text_px);
     return draw(console, request, cell, def, picture_of(request));
 }
 
@@ -411,6 +444,8 @@ void add_options(CLI::App& command, PictureOptions& options, const std::string& 
         .add_option("--ppi", options.pixels_per_inch,
                     "pixels per inch in print; 96, or 300 with --width-mm, whose pixels it sets")
         ->check(within(1.0, 10000.0));
+    command.add_option("--font-pt", options.font_pt, "size of letters in points; 8 with --width-mm")
+        ->check(within(1.0, 100.0));
     add_gl(command, options.film);
     add_fail_empty(command, options.fail_empty);
     command.add_flag("--force", options.force, "replace existing files");

@@ -29,8 +29,9 @@ constexpr double kCapitalPerText = 0.73;  // of DejaVu Sans
 /// Layout of the cells of a contact sheet, each with a line of text below it.
 class Sheet {
   public:
-    Sheet(int width_px, int height_px, int columns, int count)
-        : width_px_(width_px),
+    Sheet(int width_px, int height_px, int columns, int count, std::optional<double> text_px)
+        : text_px_(text_px),
+          width_px_(width_px),
           height_px_(height_px),
           columns_(std::min(columns, kMaxSidePx)),  // more do not fit
           rows_((count - 1) / columns_ + 1),
@@ -39,6 +40,7 @@ class Sheet {
     [[nodiscard]] int cell_width_px() const { return (width_px_ - (columns_ + 1) * gap_px_) / columns_; }
     [[nodiscard]] int cell_height_px() const { return row_height_px() - caption_px(); }
     [[nodiscard]] int text_px() const {
+        if (text_px_) return static_cast<int>(std::lround(*text_px_));
         return std::clamp(static_cast<int>(kTextPerSide * std::min(cell_width_px(), row_height_px())),
                           kMinTextPx, kMaxTextPx);
     }
@@ -70,6 +72,7 @@ class Sheet {
         return k * cell_px + (k + 1) * (side_px - cells * cell_px) / (cells + 1);
     }
 
+    std::optional<double> text_px_;
     int width_px_;
     int height_px_;
     int columns_;
@@ -77,29 +80,29 @@ class Sheet {
     int gap_px_;
 };
 
-int best_columns(int width_px, int height_px, int count) {
+int best_columns(int width_px, int height_px, int count, std::optional<double> text_px) {
     int best = 1;
     for (int columns = 2; columns <= std::min(count, width_px); ++columns) {
-        if (Sheet(width_px, height_px, columns, count).badness(count) <
-            Sheet(width_px, height_px, best, count).badness(count))
+        if (Sheet(width_px, height_px, columns, count, text_px).badness(count) <
+            Sheet(width_px, height_px, best, count, text_px).badness(count))
             best = columns;
     }
     return best;
 }
 
 /// The most cells that have room, in this many columns or, with 0, in any number of them.
-int most_cells(int width_px, int height_px, int columns) {
+int most_cells(int width_px, int height_px, int columns, std::optional<double> text_px) {
     int most = 0;
     columns = std::min(columns, kMaxSidePx);
     const int last = columns == 0 ? width_px / kMinCellPx : columns;
     for (int c = std::max(columns, 1); c <= last; ++c)
-        for (int rows = 1; Sheet(width_px, height_px, c, c * rows).has_room(); ++rows)
+        for (int rows = 1; Sheet(width_px, height_px, c, c * rows, text_px).has_room(); ++rows)
             most = std::max(most, c * rows);
     return most;
 }
 
 Sheet sheet_of(const FigureDef& def) {
-    return {def.width_px, def.height_px, def.columns, static_cast<int>(def.times_s.size())};
+    return {def.width_px, def.height_px, def.columns, static_cast<int>(def.times_s.size()), def.text_px};
 }
 
 void check(const Film& film, const FigureDef& def) {
@@ -248,15 +251,16 @@ std::string vector_bytes(const std::string& ending, const Film& film, const Figu
 
 }  // namespace
 
-FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns) {
+FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns,
+                        std::optional<double> text_px) {
     const VideoDef& video = scene.video;
     const int count = static_cast<int>(std::max<std::size_t>(times_s.size(), 1));
     const int asked = columns;
-    if (columns == 0) columns = best_columns(video.width_px, video.height_px, count);
-    FigureDef def{std::move(times_s), columns, video.width_px, video.height_px};
-    const Sheet sheet(video.width_px, video.height_px, std::max(columns, 1), count);
+    if (columns == 0) columns = best_columns(video.width_px, video.height_px, count, text_px);
+    FigureDef def{std::move(times_s), columns, video.width_px, video.height_px, 0.0, text_px};
+    const Sheet sheet(video.width_px, video.height_px, std::max(columns, 1), count, text_px);
     if (columns < 1 || !sheet.has_room()) {
-        const int most = columns < 1 ? 0 : most_cells(video.width_px, video.height_px, asked);
+        const int most = columns < 1 ? 0 : most_cells(video.width_px, video.height_px, asked, text_px);
         throw_usage(
             "{} cells{} have no room in a contact sheet of {}x{} pixels (each takes {} at least), {} have; "
             "ask for fewer times or a larger size",
@@ -265,6 +269,7 @@ FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns) 
     }
     scene.overlay.time = false;  // it is written below the cell
     scene = scaled_to(std::move(scene), sheet.cell_width_px(), sheet.cell_height_px());
+    if (text_px) scene.overlay.text_px = text_px;
     return def;
 }
 

@@ -262,12 +262,15 @@ struct FigureDef {
     int height_px = 0;
     /// Exposure as in Film::still(), 0 .. 1; only for one time in one PNG.
     double shutter = 0.0;
+    /// The size of the times of a contact sheet; default: grows with its cells.
+    std::optional<double> text_px = {};
 };
 
 /// A contact sheet of the scene's picture size. Changes `scene` to the size of a cell: draw_figure() and
-/// write_figure() draw the sheet with a film of this scene. `columns`: 0 chooses them. Throws corda::Error
-/// (kUsage) if the cells do not fit.
-[[nodiscard]] FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns = 0);
+/// write_figure() draw the sheet with a film of this scene. `columns`: 0 chooses them. `text_px`: the size of
+/// all its texts, also those in cells. Throws corda::Error (kUsage) if the cells do not fit.
+[[nodiscard]] FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns = 0,
+                                      std::optional<double> text_px = {});
 
 /// Throws corda::Error as Film::still(), and kUsage for an invalid definition or poses with too many lines.
 [[nodiscard]] Image draw_figure(const Film& film, const FigureDef& def);

@@ -45,6 +45,7 @@ Json json_of(const PictureOrigin& picture) {
     if (picture.columns > 0) json["columns"] = picture.columns;
     if (picture.shutter > 0.0) json["shutter"] = picture.shutter;
     if (picture.pixels_per_inch) json["pixels_per_inch"] = *picture.pixels_per_inch;
+    if (picture.font_pt) json["font_pt"] = *picture.font_pt;
     return json;
 }
 
@@ -71,12 +72,14 @@ PictureOrigin picture_of(const Json& json) {
     picture.columns = json.value("columns", 0);
     picture.shutter = json.value("shutter", 0.0);
     if (json.contains("pixels_per_inch")) picture.pixels_per_inch = json["pixels_per_inch"].get<double>();
+    if (json.contains("font_pt")) picture.font_pt = json["font_pt"].get<double>();
     const bool is_known =
         picture.command == "still" || picture.command == "strobe" || picture.command == "sheet";
-    const bool is_sound =
-        is_known && !picture.times.empty() && picture.columns >= 0 && picture.columns <= 1000 &&
-        picture.shutter >= 0.0 && picture.shutter <= 1.0 &&
-        (!picture.pixels_per_inch || (*picture.pixels_per_inch > 0.0 && *picture.pixels_per_inch <= 10000.0));
+    const bool is_sound = is_known && !picture.times.empty() && picture.columns >= 0 &&
+                          picture.columns <= 1000 && picture.shutter >= 0.0 && picture.shutter <= 1.0 &&
+                          (!picture.pixels_per_inch ||
+                           (*picture.pixels_per_inch > 0.0 && *picture.pixels_per_inch <= 10000.0)) &&
+                          (!picture.font_pt || (*picture.font_pt >= 1.0 && *picture.font_pt <= 100.0));
     if (!is_sound) throw Error(ExitCode::kUsage, "its picture is not what corda writes");
     return picture;
 }

@@ -28,6 +28,7 @@ struct PictureOrigin {
     int columns = 0;  ///< of a sheet; 0: not given
     double shutter = 0.0;
     std::optional<double> pixels_per_inch = {};
+    std::optional<double> font_pt = {};  ///< of all letters
 
     friend bool operator==(const PictureOrigin&, const PictureOrigin&) = default;
 };

@@ -69,7 +69,7 @@ Color faint(Color color, std::uint8_t alpha) {
 
 }  // namespace
 
-PlotLayout lay_out_plots(std::size_t count, int width_px, int height_px) {
+PlotLayout lay_out_plots(std::size_t count, int width_px, int height_px, std::optional<double> text_px) {
     const bool is_beside = width_px > height_px;
     const int em_px = em_of(width_px, height_px);
     const int all_px = std::max(width_px, height_px);   // along which the picture makes room
@@ -80,8 +80,8 @@ PlotLayout lay_out_plots(std::size_t count, int width_px, int height_px) {
         const int per_line = (shown + lines - 1) / lines;
         const int room_px = lines == 1 ? rounded(kPanelShare * all_px) : all_px / 2;
         const double tight = is_beside && smallest == kSmallest ? kTight : 1.0;
-        int own_em_px = em_px;
-        if (shown > 1)
+        int own_em_px = text_px ? rounded(*text_px) : em_px;
+        if (shown > 1 || text_px)
             own_em_px =
                 std::min(own_em_px, static_cast<int>(std::min(room_px / (lines * least_em),
                                                               side_px / (per_line * tight * least_side_em))));

@@ -52,13 +52,16 @@ struct PlotData {
 /// The parts of a frame: the upper left one for the picture, and the panels of the live plots, in a column to
 /// the right of it if the frame is wider than high, otherwise in a row below; in two columns or rows if their
 /// texts would be too small in one. A frame without room for all plots has panels for the first ones.
+/// `text_px`: the size of their texts as far as there is room for it; without it, one that grows with the
+/// frame.
 struct PlotLayout {
     int width_px = 0;   ///< of the picture
     int height_px = 0;  ///< of the picture
     int em_px = 0;      ///< of the plots' texts
     std::vector<PixelRect> panels = {};
 };
-[[nodiscard]] PlotLayout lay_out_plots(std::size_t count, int width_px, int height_px);
+[[nodiscard]] PlotLayout lay_out_plots(std::size_t count, int width_px, int height_px,
+                                       std::optional<double> text_px = {});
 
 /// The place of a plot in a frame, and its colours and fonts.
 struct PlotPlace {
