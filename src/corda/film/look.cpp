@@ -17,7 +17,8 @@
 namespace corda::film {
 namespace {
 
-view::Overlay overlay_of(const Scene& scene, const view::OverlayData& data = {}) {
+view::Overlay overlay_of(const Scene& scene, view::OverlayData data = {}) {
+    data.speed = scene.video.speed;
     OverlayDef def = scene.overlay;
     def.font = font_path(scene);
     const VideoDef& video = scene.video;

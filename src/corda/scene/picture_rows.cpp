@@ -59,7 +59,9 @@ std::vector<Key> video_keys() {
         {"video", "subframes", integer(2, VideoDef::kMaxSubframes), "", field(&VideoDef::subframes),
          "the number of pictures that a blurred frame is the mean of"},
         {"video", "loop", integer(0, VideoDef::kMaxLoop), "", field(&VideoDef::loop),
-         "how often a .gif plays", "0: for ever"},
+         "how often a .gif plays", "0: for ever; only for a .gif"},
+        {"video", "hold", number({.low = 0.0, .high = VideoDef::kMaxHoldS}), "s", field(&VideoDef::hold_s),
+         "how long the last picture stays at the end of a video", "not of a sequence of pictures"},
         {"video", "codec", one_of(media::codec_names()), "",
          otherwise("the ending's", encoder(&EncoderDef::codec)), "the encoder",
          "h264, h265, av1, vp9 and so on stand for libav's names"},
@@ -188,7 +190,7 @@ std::vector<Key> overlay_keys() {
          "texts in the picture, for a time each"},
         {"overlay", "text_px", number({.low = 4.0, .high = 400.0}), "px",
          otherwise("shorter side / 40, at least readable", field(&OverlayDef::text_px)),
-         "the size of the words at the edges"},
+         "the size of the words at the edges", "and of those of plots, as far as they have room"},
     };
 }
 
@@ -223,6 +225,12 @@ std::vector<Key> overlay_text_keys() {
         {section, "from", number(kFrom0), "s", field(&OverlayTextDef::from_s), "when it appears"},
         {section, "to", number(kFrom0), "s", otherwise("the end", field(&OverlayTextDef::to_s)),
          "when it disappears"},
+        {section, "fade", number(kFrom0), "s", field(&OverlayTextDef::fade_s),
+         "how long it takes to appear, and before `to` to disappear"},
+        {section, "size", number({.low = 4.0, .high = 400.0}), "px",
+         otherwise("overlay.text_px", field(&OverlayTextDef::size_px)), "the size of its letters"},
+        {section, "color", of(Kind::kColor), "", otherwise("the theme's", field(&OverlayTextDef::color)),
+         "the colour"},
     };
 }
 
@@ -285,7 +293,8 @@ std::vector<Key> golden_keys() {
     return {
         {"golden", "at", times, "s", required(field(&GoldenDef::at_s)), "the times of the pictures",
          "increasing, none after world.duration"},
-        {"golden", "size", picture_size(), "px", size_field<GoldenDef>(), "the size of the pictures"},
+        {"golden", "size", picture_size(), "px", size_field<GoldenDef>(), "the size of the pictures",
+         "widths in px stay as they are, as with --size"},
         limit("max", 0.0, 255.0, &GoldenDef::max, "the largest difference of a channel that passes", ""),
         limit("mean", 0.0, 255.0, &GoldenDef::mean, "the mean difference of all channels that passes", ""),
         limit("share", 0.0, 1.0, &GoldenDef::share, "the share of differing pixels that passes",

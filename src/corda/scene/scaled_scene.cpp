@@ -16,6 +16,11 @@ using namespace scene;  // the schema
 std::vector<void*> defs_of(Scene& scene, const Key& key, std::type_index type) {
     if (type == typeid(StyleDef)) return {&scene.style};
     if (type == typeid(OverlayDef)) return {&scene.overlay};
+    if (type == typeid(OverlayTextDef)) {
+        std::vector<void*> defs;
+        for (OverlayTextDef& text : scene.overlay.texts) defs.push_back(&text);
+        return defs;
+    }
     if (type == typeid(BodyStyleDef)) {
         const std::size_t ropes = std::min(scene.ropes.size(), scene.body_styles.size());
         const bool are_ropes = key.section == "rope";

@@ -137,10 +137,13 @@ enum class Language { kEnglish, kGerman, kPortuguese, kSpanish, kFrench };
 
 /// A text in the picture.
 struct OverlayTextDef {
-    std::string text;            ///< as OverlayDef::title
-    Vec2 at{0.5, 0.5};           ///< its middle, as shares of the picture from its upper left; 0 .. 1
-    double from_s = 0.0;         ///< >= 0: from when on it shows
-    std::optional<double> to_s;  ///< and before when, later than from_s; default: to the end
+    std::string text;                 ///< as OverlayDef::title
+    Vec2 at{0.5, 0.5};                ///< its middle, as shares of the picture from its upper left; 0 .. 1
+    double from_s = 0.0;              ///< >= 0: from when on it shows
+    std::optional<double> to_s = {};  ///< and before when, later than from_s; default: to the end
+    double fade_s = 0.0;  ///< >= 0: how long it takes to appear, and to disappear if to_s is given
+    std::optional<double> size_px = {};  ///< 4 .. 400; default: OverlayDef::text_px
+    std::optional<Color> color = {};     ///< default: the theme's
 };
 
 /// Texts and plots at the edges of a picture.

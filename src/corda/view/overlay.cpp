@@ -33,6 +33,12 @@ std::string energy_text(const Energy& energy, double scale_j, Language language)
                        translated("potential", language), text(energy.potential_j()));
 }
 
+/// "1/4 speed", "2× speed"
+std::string speed_text(Rational speed, Language language) {
+    return fmt::format(fmt::runtime(translated("{} speed", language)),
+                       speed.text() + (speed.den == 1 ? "×" : ""));
+}
+
 /// A text at the lower edge, to the right of the time.
 struct BottomText {
     bool (*is_shown)(const OverlayDef& def);
@@ -113,6 +119,8 @@ void draw_bottom(const Overlay& overlay, const Caption& caption, double pixels_p
         left_px = write_bottom(area, time_text(overlay, *caption.time_s), left_px, right_px, list,
                                time_text(overlay, kTwoDigitsS));
     if (overlay.has_scale_bar) right_px = draw_scale_bar(area, pixels_per_metre, left_px, right_px, list);
+    if (overlay.has_time && caption.time_s && !overlay.speed.empty())
+        left_px = write_bottom(area, overlay.speed, left_px, right_px, list);
     for (const BottomText& item : kBottomTexts) {
         if (item.is_shown(overlay.def) && caption.time_s)
             left_px = write_bottom(area, item.text(caption, overlay.energy_scale_j, area.language), left_px,
@@ -146,7 +154,7 @@ std::string time_label(const std::string& digits, Language language) {
 
 Overlay make_overlay(const OverlayDef& def, const StyleDef& style, int width_px, int height_px,
                      double interval_s, const OverlayData& data) {
-    const PlotLayout layout = lay_out_plots(def.plots.size(), width_px, height_px);
+    const PlotLayout layout = lay_out_plots(def.plots.size(), width_px, height_px, def.text_px);
     const ThemeColors colors = theme_colors(style);
     const int side_px = std::min(width_px, height_px);
     const int em_px = def.text_px ? rounded(*def.text_px) : em_of(width_px, height_px);
@@ -160,6 +168,7 @@ Overlay make_overlay(const OverlayDef& def, const StyleDef& style, int width_px,
     while (overlay.time_decimals < kMaxDecimals && interval_s * power_of_10(overlay.time_decimals) < 1.0)
         ++overlay.time_decimals;
     overlay.energy_scale_j = data.energy_scale_j;
+    if (data.speed != Rational{1, 1}) overlay.speed = speed_text(data.speed, def.language);
     const bool has_legends = def.legend.value_or(by_default);
     const bool has_color_legend = has_legends && quantity_of(style.color_by);
     const bool has_arrow_legend = has_legends && style.arrows != Arrows::kNone;
@@ -197,7 +206,8 @@ void draw(const Overlay& overlay, const Caption& caption, double pixels_per_metr
     for (const Text& line : overlay.heading.title) area.words.write(line, list);
     for (const OverlayTextDef& text : overlay.def.texts) {
         const double time_s = caption.time_s.value_or(-1.0);
-        if (time_s >= text.from_s && time_s < text.to_s.value_or(HUGE_VAL)) draw_text(area, text, list);
+        if (time_s >= text.from_s && time_s < text.to_s.value_or(HUGE_VAL))
+            draw_text(area, text, time_s, list);
     }
     if (overlay.def.method)
         area.font.write(

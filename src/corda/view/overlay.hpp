@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "corda/core/rational.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/view/camera.hpp"
 #include "corda/view/colors.hpp"
@@ -34,6 +35,7 @@ struct OverlayData {
     std::vector<BodyLabel> labels = {};
     std::span<const PlotData> plots = {};
     std::span<const Color> body_colors = {};
+    Rational speed{1, 1};  ///< seconds of the scene per second of the video
 };
 
 /// Texts and scale bar at the edges of a picture, and the live plots. Time and energy are at the lower
@@ -47,6 +49,7 @@ struct Overlay {
     bool has_scale_bar = true;
     int time_decimals = 2;
     double energy_scale_j = 0.0;
+    std::string speed = {};  ///< next to the time; empty: that of the motion
     Heading heading = {};
     std::optional<ColorLegend> color_legend = {};
     std::optional<ArrowLegend> arrow_legend = {};

@@ -1,6 +1,8 @@
 #include "corda/view/overlay_texts.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <utility>
@@ -106,25 +108,29 @@ Heading make_heading(const TextArea& area, const OverlayDef& def, int beside_end
     return heading;
 }
 
-void draw_text(const TextArea& area, const OverlayTextDef& text, DrawList& list) {
+void draw_text(const TextArea& area, const OverlayTextDef& text, double time_s, DrawList& list) {
+    const int em_px = text.size_px ? rounded(*text.size_px) : area.em_px;
+    Color color = text.color.value_or(area.color);
+    const double left_s = std::min(time_s - text.from_s, text.to_s.value_or(HUGE_VAL) - time_s);
+    if (left_s < text.fade_s) color.a = static_cast<std::uint8_t>(rounded(color.a * left_s / text.fade_s));
     // One whose middle is in the picture stays apart from the plots.
     const bool is_apart =
         text.at.x * list.width <= area.width_px && text.at.y * list.height <= area.height_px;
     const int end_px = (is_apart ? area.width_px : list.width) - area.edge_px;
     const auto lines =
-        wrapped(area.words, text.text, area.em_px, [&](int /*line*/) { return end_px - area.edge_px; });
-    const int line_px = rounded(kLine * area.em_px);
+        wrapped(area.words, text.text, em_px, [&](int /*line*/) { return end_px - area.edge_px; });
+    const int line_px = rounded(kLine * em_px);
     const int more_px = line_px * (static_cast<int>(lines.size()) - 1);
-    const int highest_px = rounded(kTallest * area.em_px);
-    const int bottom_px = (is_apart ? area.height_px : list.height) - rounded(kDescent * area.em_px);
-    int y_px = rounded(text.at.y * list.height + 0.5 * kAscent * area.em_px) - more_px / 2;
+    const int highest_px = rounded(kTallest * em_px);
+    const int bottom_px = (is_apart ? area.height_px : list.height) - rounded(kDescent * em_px);
+    int y_px = rounded(text.at.y * list.height + 0.5 * kAscent * em_px) - more_px / 2;
     y_px = std::clamp(y_px, highest_px, std::max(highest_px, bottom_px - more_px));
     for (const Line& line : lines) {
-        const std::string shown = area.words.shortened(line.text, area.em_px, line.room_px);
-        const int width_px = area.words.width_px(shown, area.em_px);
+        const std::string shown = area.words.shortened(line.text, em_px, line.room_px);
+        const int width_px = area.words.width_px(shown, em_px);
         const int most_px = std::max(area.edge_px, end_px - width_px);
         const int x_px = std::clamp(rounded(text.at.x * list.width - 0.5 * width_px), area.edge_px, most_px);
-        area.words.write({x_px, y_px, area.em_px, area.color, shown}, list);
+        area.words.write({x_px, y_px, em_px, color, shown}, list);
         y_px += line_px;
     }
 }

@@ -36,7 +36,7 @@ struct Heading {
 /// Breaks and shortens the title. `beside_end_px`: where the room next to the legend ends.
 [[nodiscard]] Heading make_heading(const TextArea& area, const OverlayDef& def, int beside_end_px);
 
-/// Adds a text in the picture, in several lines if it is long.
-void draw_text(const TextArea& area, const OverlayTextDef& text, DrawList& list);
+/// Adds a text in the picture at a time at which it shows, in several lines if it is long.
+void draw_text(const TextArea& area, const OverlayTextDef& text, double time_s, DrawList& list);
 
 }  // namespace corda::view

@@ -30,6 +30,7 @@ error below {} px|Fehler unter {} px|erro abaixo de {} px|error menor de {} px|e
 largest tension|größte Zugkraft|maior tensão|tensión máxima|tension maximale
 largest strain|größte Dehnung|maior deformação|deformación máxima|déformation maximale
 distance along the rope|Weg entlang des Seils|distância ao longo da corda|distancia a lo largo de la cuerda|distance le long de la corde
+{} speed|Tempo {}|velocidade {}|velocidad {}|vitesse {}
 theory|Theorie|teoria|teoría|théorie
 at rest|in Ruhe|em repouso|en reposo|au repos
 Report of {}|Bericht zu {}|Relatório de {}|Informe de {}|Rapport de {}

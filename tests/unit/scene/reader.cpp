@@ -147,6 +147,20 @@ TEST(SceneReader, Overlay) {
     EXPECT_EQ(overlay.title, "Schwünge µ");
     EXPECT_TRUE(overlay.energy && overlay.method);
     EXPECT_EQ(overlay.text_px, 33.0);
+    const OverlayTextDef text =
+        parse_scene(
+            with("[overlay]\ntexts = [{ text = \"a\", fade = 0.5, size = 40, color = \"#010203\" }]\n"), "a")
+            .overlay.texts.at(0);
+    EXPECT_EQ(text.fade_s, 0.5);
+    EXPECT_EQ(text.size_px, 40.0);
+    EXPECT_EQ(text.color, (Color{1, 2, 3, 255}));
+}
+
+TEST(SceneReader, EmptyListsOfEventsAreNone) {
+    const Scene scene =
+        parse_scene(rope_with("release = []\ncut = []\nmoves = []\n[overlay]\ntexts = []"), "a");
+    EXPECT_TRUE(scene.ropes[0].releases.empty() && scene.ropes[0].cuts.empty() &&
+                scene.ropes[0].moves.empty());
 }
 
 TEST(SceneReader, Style) {

@@ -73,12 +73,18 @@ fps = 10
 )";
     int count = 0;
     for (const scene::Key& key : scene::all_keys()) {
-        if (key.unit != "px" || key.name == "size") continue;
-        const bool is_text = key.name == "text_px";
+        if (key.unit != "px" || key.section == "video" || key.section == "golden") continue;
+        const bool is_of_text = key.section == "overlay.texts";
+        const bool is_text = key.name == "text_px" || is_of_text;
         std::string path(key.section);
-        if (path == "rope" || path == "net") path += "[0]";
-        std::vector<Setting> settings{fmt::format("{}.{}=24", path, key.name)};
-        if (is_text) settings.insert(settings.end(), {"overlay.time=true", "overlay.title='A title'"});
+        if (path == "rope" || path == "net" || is_of_text) path += "[0]";
+        std::vector<Setting> settings;
+        if (is_of_text) settings.emplace_back("overlay.texts=[{text='A text'}]");
+        if (key.name == "arrow_scale")
+            settings.insert(settings.end(), {"style.arrows='velocity'", "overlay.legend=false"});
+        settings.push_back(fmt::format("{}.{}=24", path, key.name));
+        if (key.name == "text_px")
+            settings.insert(settings.end(), {"overlay.time=true", "overlay.title='A title'"});
         const Scene whole = parse_scene(kScene, "scene.toml", settings);
         const Image frame = Film(whole).frame(4);
         for (const auto& [width, height] :

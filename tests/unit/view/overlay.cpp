@@ -332,6 +332,45 @@ TEST(Overlays, ShowTextsForTheirTime) {
     EXPECT_LT(Font().ink(drawn(def, {2.0, {}, {}}, 640, 360).texts.at(0)).x1, 640);
 }
 
+TEST(Overlays, TextsHaveTheirSizeAndColourAndFade) {
+    OverlayDef def;
+    def.time = def.scale_bar = false;
+    def.texts = {{.text = "a",
+                  .from_s = 1.0,
+                  .to_s = 3.0,
+                  .fade_s = 0.5,
+                  .size_px = 40.0,
+                  .color = Color{9, 8, 7, 200}},
+                 {.text = "b", .from_s = 1.0, .fade_s = 1.0}};
+    const auto texts = [&](double time_s) { return drawn(def, {time_s, {}, {}}, 640, 360).texts; };
+    EXPECT_EQ(texts(2.0)[0].size_px, 40);
+    EXPECT_EQ(texts(2.0)[0].color, (Color{9, 8, 7, 200}));
+    EXPECT_EQ(texts(1.25)[0].color.a, 100);
+    EXPECT_EQ(texts(2.875)[0].color.a, 50);
+    EXPECT_EQ(texts(1.5)[1].color.a, 128);
+    EXPECT_EQ(texts(9.0)[0].color.a, 255);  // b stays
+    EXPECT_LT(texts(2.0)[1].size_px, 20);
+}
+
+TEST(Overlays, TellThatMotionIsSlow) {
+    const auto shown = [](Rational speed, Language language, bool has_time = true) {
+        OverlayDef def;
+        def.scale_bar = false;
+        def.time = has_time;
+        def.language = language;
+        DrawList list;
+        list.width = 640;
+        list.height = 360;
+        draw(make_overlay(def, {}, 640, 360, kFrameS, {.speed = speed}), {1.2, {}, {}}, 100.0, list);
+        return words(list);
+    };
+    EXPECT_EQ(shown({1, 4}, Language::kEnglish), (Words{"t = 1.20 s", "1/4 speed"}));
+    EXPECT_EQ(shown({1, 4}, Language::kGerman), (Words{"t = 1,20 s", "Tempo 1/4"}));
+    EXPECT_EQ(shown({2, 1}, Language::kFrench), (Words{"t = 1,20 s", "vitesse 2×"}));
+    EXPECT_EQ(shown({1, 1}, Language::kEnglish), Words{"t = 1.20 s"});
+    EXPECT_TRUE(shown({1, 4}, Language::kEnglish, false).empty());
+}
+
 TEST(Overlays, PlaceTextsInTheWholePictureAndNeverCutThem) {
     OverlayDef def;
     def.time = def.scale_bar = false;
