@@ -120,8 +120,8 @@ class Checks : NonCopyable {
 
     [[nodiscard]] std::size_t size() const { return checks_.size(); }
 
-    /// Begins to advance all to a time; the caller may advance the run meanwhile. They end if all of them
-    /// would take more work than this in updates of a particle.
+    /// Begins to advance all to a time, in threads if that is worth it; the caller may advance the run
+    /// meanwhile. They end if all of them would take more work than this in updates of a particle.
     void start(double time_s, double most_updates = HUGE_VAL);
     /// Waits until they are there. kDiverged also if one has branched or ended. Throws what
     /// Solver::advance_to throws.
@@ -146,10 +146,9 @@ class Checks : NonCopyable {
     class Check;
 
     std::atomic<bool> is_abandoned_ = false;
-    bool in_threads_;
     bool are_alike_ = true;  ///< they differ by rounding alone
     bool have_ended_ = false;
-    double time_s_ = 0.0;
+    double time_s_ = 0.0;             ///< that they have reached, or are on their way to
     double most_updates_ = HUGE_VAL;  ///< of each until it is there
     double updates_ = 0.0;
     std::uint64_t steps_ = 0;
