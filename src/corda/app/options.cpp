@@ -48,7 +48,7 @@ void warn_of_late_events(const Console& console, const Scene& scene) {
     console.warning(fmt::format(
         "{}: {} not before the end of the film at {} s, so that nothing happens{}; give an earlier time, or "
         "a longer world.duration",
-        scene.source, first, end_s, late == 1 ? "" : fmt::format(", as with {} more", late - 1)));
+        scene.source, first, end_s, late == 1 ? "" : fmt::format(" ({} more events are as late)", late - 1)));
 }
 
 /// Whoever made the file must not decide how much memory this machine gives.

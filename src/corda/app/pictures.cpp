@@ -163,7 +163,11 @@ void take_record(const std::optional<PictureOrigin>& record, Request& request) {
     if (options.shutter == 0.0) options.shutter = is_frame ? scene.video.shutter : record->shutter;
     if (options.width_mm) return;
     if (!options.pixels_per_inch) options.pixels_per_inch = record->pixels_per_inch;
-    if (!options.font_pt) options.font_pt = record->font_pt;
+    const auto gives_letters = [](const Setting& setting) {
+        return setting.starts_with("overlay.text_px") || setting.starts_with("overlay=");
+    };
+    if (!options.font_pt && std::ranges::none_of(options.scene.settings, gives_letters))
+        options.font_pt = record->font_pt;
 }
 
 /// Gives the scene the picture size of `--width-mm`.

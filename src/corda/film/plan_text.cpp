@@ -43,8 +43,8 @@ std::string_view remedy(Refusal::Reason reason) {
         case Reason::kUndecidedString:
             return "change its points or velocity a little";
         case Reason::kUnlikeMoves:
-            return "give all pins of a string or net the same waves and path in moves, or use method auto or "
-                   "rattle, or let it stretch by a compliance";
+            return "give all pins of the body the same waves and path in moves, or let it stretch by a "
+                   "compliance";
         case Reason::kTautBetweenPins:
             return "let the rope sag between its pins (other points, or a string with a larger link_length), "
                    "or pin the particles between them too";

@@ -92,15 +92,20 @@ class FrameDrawer {
 
     Drawn draw(std::int64_t k) {
         check_cancelled();
+        if (k > last_ && shows_last_) return {maker_.make(k, canvas_->image(), Damage{}), is_last_empty_};
         const double time_s = film_.time_s(std::min(k, last_));
         const auto [damage, is_empty] =
             film::paint(film_.look(), film_.motion(), time_s, film_.scene().video.shutter, *canvas_);
+        shows_last_ = k >= last_;
+        is_last_empty_ = is_empty;
         return {maker_.make(k, canvas_->image(), damage), is_empty};
     }
 
   private:
     const Film& film_;
     std::int64_t last_;  ///< the frame that later ones repeat
+    bool shows_last_ = false;
+    bool is_last_empty_ = false;
     render::CanvasUse canvas_;
     media::FrameMaker maker_;
 };

@@ -49,10 +49,12 @@ py::array_t<std::uint8_t> frames(const PyFilm& film) {
     return all;
 }
 
-/// A scene with settings, which messages name with "vary".
+/// A scene with settings, which messages name with "vary". Its video has the frames of its arrays alone.
 Scene sample_scene(const std::string& text, const std::string& source,
                    const std::vector<std::string>& settings) {
-    return Asking().run([&] { return parse_scene(text, source, {}, {"vary", settings}); });
+    Scene scene = Asking().run([&] { return parse_scene(text, source, {}, {"vary", settings}); });
+    scene.video.hold_s = 0.0;
+    return scene;
 }
 
 /// The film of a scene with settings.

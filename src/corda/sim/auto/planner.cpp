@@ -425,9 +425,8 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
     };
     BodyPlan plan;
     const auto exact_refusal = refusal_of(ExactDef{kTolerance[kMaxDigits]});
-    if (exact_refusal && exact_refusal->reason() != Refusal::Reason::kUnlikeMoves &&
-        (is_rigid_chain(system.bodies.front()) ||
-         exact_refusal->reason() == Refusal::Reason::kBarWithoutLength))
+    if (exact_refusal && (is_rigid_chain(system.bodies.front()) ||
+                          exact_refusal->reason() == Refusal::Reason::kBarWithoutLength))
         throw Refusal(*exact_refusal);
     plan.reason = exact_refusal ? PlanReason::kGraph : PlanReason::kExact;
     try {

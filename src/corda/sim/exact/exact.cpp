@@ -129,9 +129,13 @@ std::unique_ptr<Exact> Exact::make(const System& system, const Forces& forces, c
         return std::make_unique<OdePart>(system, forces, std::make_unique<ElasticDynamics>(system, forces),
                                          def.tolerance);
     }
-    if (!system.moves.empty() && (body.material.is_string || !moves_as_chains(system, body)))
+    if (!system.moves.empty() && body.material.is_string)
         throw Refusal(Refusal::Reason::kUnlikeMoves,
-                      "method exact moves rigid strings and nets only if their pins move alike");
+                      "a string of rigid links moves only with pins that move alike");
+    if (!system.moves.empty() && !moves_as_chains(system, body))
+        throw Refusal(
+            Refusal::Reason::kUnlikeMoves,
+            "method exact moves rigid nets only with pins that move alike, and method rattle others too");
     if (!body.material.is_string && !moves_as_chains(system, body)) {
         return std::make_unique<OdePart>(system, forces, make_net_dynamics(system, forces), def.tolerance);
     }

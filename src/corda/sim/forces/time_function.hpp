@@ -11,8 +11,7 @@
 
 namespace corda::sim {
 
-/// Times count as one from a few roundings on, because they are sums of steps: whether `key_s` is not after
-/// `time_s`.
+/// Whether `key_s` is at or before `time_s`, or later by a few roundings, because times are sums of steps.
 [[nodiscard]] inline bool is_reached(double key_s, double time_s) {
     constexpr double kFewRoundings = 4.0 * std::numeric_limits<double>::epsilon();
     return key_s <= time_s + kFewRoundings * std::abs(time_s);
