@@ -63,6 +63,7 @@ class Generator:
         solver = table.get("solver", {})
         used = METHOD_KEYS[solver.get("method", "auto")] | {"method"}
         table["solver"] = {key: value for key, value in solver.items() if key in used}
+        self.fit_pictures(table)
         by_link = table.get("style", {}).get("color_by") == "link"
         for body in table.get("rope", []) + table.get("net", []):
             if isinstance(body.get("color"), list) and not by_link:
@@ -73,6 +74,29 @@ class Generator:
                 body.pop("link_length", None)
                 if "grid" in body or "bars" in body or body.get("closed"):
                     body.pop("string", None)
+
+    def fit_pictures(self, table):
+        """The same of tables that change pictures alone."""
+        style, overlay, camera, video = (table.get(name, {}) for name in ("style", "overlay", "camera", "video"))
+        plots = overlay.get("plots", [])
+        ranges = overlay.get("plot_range", {})
+        has_balls = any(body.get("payload") for body in table.get("rope", [])) and style.get("payload", True)
+        for its, key, is_used in ((style, "color_range", style.get("color_by") in ("tension", "speed", "strain")),
+                                  (style, "arrow_scale", style.get("arrows", "none") != "none"),
+                                  (style, "trail_of", style.get("trail_s", 0) > 0), (style, "payload_radius", has_balls),
+                                  (overlay, "energy_zero", "energy" in plots), (overlay, "font", False),
+                                  (camera, "follow", "path" not in camera), (video, "loop", False)):
+            if not is_used:
+                its.pop(key, None)
+        if plots:
+            overlay["plots"] = sorted(set(plots))
+        for name in [name for name in ranges if name not in plots]:
+            del ranges[name]
+        for its, key in [(style, "color_range"), *((ranges, name) for name in ranges)]:
+            if key in its:
+                its[key] = [min(its[key]), max(its[key]) + 1.0]
+        if "speed" in video:
+            video["speed"] = self.random.choice((0.25, 2, "1/3"))
 
     def limit_work(self, table):
         """Limits the time and disk space of random values. Extreme ones remain: a signal ends them."""
