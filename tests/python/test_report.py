@@ -205,6 +205,10 @@ def test_drawings_are_those_of_the_first_swing(tmp_path):
     assert times.is_swing and len(times.strobe) == 6 and times.strobe[0] == 0.0
     assert times.strobe[-1] == pytest.approx(1.0765, abs=0.01)  # half of the period at 60 degrees (R2)
     assert times.stills == [0.0, 0.75, 1.5, 2.25, 3.0]
+    above = motion_of(corda.Film(text=toml.replace("60.0", "150.0"), fps=100))
+    assert _chapters.drawing_times(above, []).strobe[-1] == pytest.approx(1.767, abs=0.01)  # half of 3.535 s
+    whirls = motion_of(corda.Film(text=toml.replace("60.0 }", "0.0 }\nvelocity = [9.0, 0.0]"), fps=100))
+    assert not _chapters.drawing_times(whirls, []).is_swing  # it never turns back
     flies = motion_of(corda.Film(text="schema = 1\n[world]\nduration = 1.0\n[[rope]]\npoints = [[0.0, 0.0], [1.0, 0.0]]\n"
                                       "pinned = []\n[video]\nfps = 10\n"))
     assert _chapters.drawing_times(flies, []) == ([0.0, 0.2, 0.4, 0.6, 0.8, 1.0], [0.0, 0.3, 0.5, 0.8, 1.0], False)

@@ -200,7 +200,8 @@ def test_a_contact_sheet_shows_poses_and_parameters(run, tmp_path):
     mirrored, plain = (corda.compare(cells[0][:, ::step], cells[2]).mean for step in (-1, 1))
     assert mirrored < 0.6 * plain  # measured 1.57 and 3.47: the hatches of the support are not mirrored
     film = corda.Film(text=SCENE, size=(240, 180), settings={"rope[0].hang.angle_deg": 30.0, "overlay": {"time": False}})
-    film.save_still(tmp_path / "poses.png", spread(film.times, first_turn(film.positions[:, 1]), 6))
+    last = first_turn(film.positions[:, 1], film.positions[:, 0])
+    film.save_still(tmp_path / "poses.png", spread(film.times, last, 6))
     assert (corda.read_png(tmp_path / "poses.png") == cells[0]).all()  # without times at the poses
     labels = sheet[12 + 180 : row_px - 12, 12:252]
     assert (labels[..., 0] < 100).sum() > 200  # text

@@ -352,12 +352,12 @@ class Times(typing.NamedTuple):
 
 def drawing_times(motion, asked):
     """The times that were asked for, as far as the motion goes. Without any, the strobe has six from the start to where the
-    first tracked particle first turns back in x, or else to the end; and the stills are five from the start to the end. All of
-    these are frame times."""
+    first tracked particle first turns back, about its pin or in x, or else to the end; and the stills are five from the start to
+    the end. All of these are frame times."""
     if asked:
         end = motion.times[-1] if motion.failure is not None else motion.duration
         times = sorted({time for time in asked if time <= end})
         return Times(times, times)
 
-    turn = first_turn(motion.tracks[0].position) if motion.tracks else None
+    turn = first_turn(motion.tracks[0].position, motion.tracks[0].pin) if motion.tracks else None
     return Times(spread(motion.times, turn, 6), spread(motion.times, None, 5), turn is not None)

@@ -56,7 +56,8 @@ class Track:
         #: Positions relative to the origin of the motion, and velocities: (frames, 2).
         self.position = motion.positions[:, body.tracked]
         self.velocity = motion.velocities[:, body.tracked]
-        pin = None if body.pin is None else motion.positions[:, body.pin]
+        #: The positions of the pin, if there is one.
+        self.pin = pin = None if body.pin is None else motion.positions[:, body.pin]
         self.start = self.position[0] if pin is None else pin[0]
         self.arm = None if pin is None else self.position - pin
         #: The velocity relative to the pin.
@@ -138,14 +139,14 @@ def hermite_slope(times, values, slopes, count):
     return np.concatenate([inside.reshape(-1, *values.shape[1:]), slopes[-1:]])
 
 
-def first_turn(path):
-    """The frame at which a path (frames, 2) first turns back in x, a quarter of its whole way in x or more from its start; None
-    if there is none."""
-    x = path[:, 0]
-    enough = 0.25 * np.ptp(x)
-    before, after = np.diff(x)[:-1], np.diff(x)[1:]
+def first_turn(path, pin=None):
+    """The frame at which a path (frames, 2) first turns back about that of a pin, or in x without one, a quarter of its whole way
+    or more from its start; None if there is none. A quarter of a turn about the pin is always enough."""
+    way = path[:, 0] if pin is None else np.unwrap(_corda.angle(path[:, 0] - pin[:, 0], pin[:, 1] - path[:, 1]))
+    enough = 0.25 * (np.ptp(way) if pin is None else min(np.ptp(way), _TURN))
+    before, after = np.diff(way)[:-1], np.diff(way)[1:]
     turns = (before * after < 0.0) | ((before != 0.0) & (after == 0.0))
-    at = np.flatnonzero(turns & (np.abs(x[1:-1] - x[0]) >= enough)) + 1
+    at = np.flatnonzero(turns & (np.abs(way[1:-1] - way[0]) >= enough)) + 1
     return int(at[0]) if enough > 0.0 and len(at) else None
 
 

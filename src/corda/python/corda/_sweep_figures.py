@@ -199,9 +199,10 @@ def write_plot(sweep, folder, columns):
 
 def _first_swing(film):
     """Six frame times from the start to the first turn of the tracked particle, or else to the end."""
-    particle = _corda.sample_facts(film)["particle"]
+    facts = _corda.sample_facts(film)
     arrays = _corda.labels(film, ["times", "positions"])
-    turn = None if particle is None else first_turn(arrays["positions"][:, particle])
+    particle, pin = (None if facts[key] is None else arrays["positions"][:, facts[key]] for key in ("particle", "pin"))
+    turn = None if particle is None else first_turn(particle, pin)
     return spread(arrays["times"], turn, _POSES)
 
 
