@@ -86,7 +86,6 @@ std::vector<Key> style_keys() {
     Type particles = list(Kind::kInteger, 1);
     particles.range = {.low = -kMaxParticles, .high = kMaxParticles - 1};
     const Type boolean = of(Kind::kBoolean);
-    const Type color = of(Kind::kColor);
     const auto of_theme = [](const Binding& binding) { return otherwise("the theme's", binding); };
     return {
         {"style", "theme", one_of({"dark", "paper"}), "",
@@ -128,6 +127,13 @@ std::vector<Key> style_keys() {
          otherwise("the free end of each rope", field(&StyleDef::trail_of)),
          "the indices of the particles with a path, in each rope and net",
          "negative ones count from the end"},
+    };
+}
+
+std::vector<Key> marker_and_bar_keys() {
+    const Type color = of(Kind::kColor);
+    const auto of_theme = [](const Binding& binding) { return otherwise("the theme's", binding); };
+    return {
         {"style", "markers", one_of({"none", "pinned", "all"}), "", field(&StyleDef::markers),
          "the particles with a marker"},
         {"style", "marker_radius_px", number(kWidthPx), "px",
@@ -309,8 +315,8 @@ std::vector<Key> golden_keys() {
 std::vector<Key> picture_rows() {
     std::vector<Key> rows;
     for (const std::vector<Key>& part :
-         {video_keys(), style_keys(), overlay_keys(), plot_range_keys(), overlay_text_keys(), camera_keys(),
-          camera_path_keys(), golden_keys()})
+         {video_keys(), style_keys(), marker_and_bar_keys(), overlay_keys(), plot_range_keys(),
+          overlay_text_keys(), camera_keys(), camera_path_keys(), golden_keys()})
         rows.insert(rows.end(), part.begin(), part.end());
     return rows;
 }

@@ -48,9 +48,7 @@ class Value {
     /// The value as a `T`. Requires a key of that type.
     template <class T>
     [[nodiscard]] T as() const {
-        if constexpr (std::is_same_v<T, Vec2>) {
-            return {at(0).as<double>(), at(1).as<double>()};
-        } else if constexpr (std::is_same_v<T, Interval>) {
+        if constexpr (std::is_same_v<T, Vec2> || std::is_same_v<T, Interval>) {
             return {at(0).as<double>(), at(1).as<double>()};
         } else if constexpr (std::is_same_v<T, Color>) {
             return *Color::parse(as<std::string_view>());

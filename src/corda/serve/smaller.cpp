@@ -37,6 +37,10 @@ void add_row(const std::uint8_t* pixels, std::int32_t weight, std::span<std::int
     }
 }
 
+std::uint8_t rounded(double value) {
+    return static_cast<std::uint8_t>(value + 0.5);  // NOLINT(bugprone-incorrect-roundings)
+}
+
 }  // namespace
 
 Image made_smaller(const Image& image, int width_px, int height_px) {
@@ -44,7 +48,7 @@ Image made_smaller(const Image& image, int width_px, int height_px) {
     std::vector<Cover> columns;
     for (int x = 0; x < width_px; ++x) columns.emplace_back(x, width_px, image.width());
     const double area = static_cast<double>(image.width()) * image.height();
-    static_assert(std::int64_t{255 * 255} * kMaxSidePx <= INT32_MAX);  // weights add up to a height
+    static_assert(std::int64_t{255} * 255 * kMaxSidePx <= INT32_MAX);  // weights add up to a height
     std::vector<std::int32_t> row(kChannels * static_cast<std::size_t>(image.width()));
     for (int y = 0; y < height_px; ++y) {
         const Cover rows(y, height_px, image.height());
@@ -60,8 +64,8 @@ Image made_smaller(const Image& image, int width_px, int height_px) {
             std::uint8_t* const pixel = small.pixel(x, y);
             const double alpha = sums[3];
             const double share = alpha == 0.0 ? 0.0 : 1.0 / alpha;
-            for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<std::uint8_t>(sums[c] * share + 0.5);
-            pixel[3] = static_cast<std::uint8_t>(alpha / area + 0.5);
+            for (std::size_t c = 0; c < 3; ++c) pixel[c] = rounded(sums[c] * share);
+            pixel[3] = rounded(alpha / area);
         }
     }
     return small;
