@@ -9,7 +9,7 @@ foreach(header
         media/defs.hpp
         film/film.hpp
         scene/scene.hpp
-        sim/defs.hpp sim/given_motion.hpp sim/simulation.hpp sim/system.hpp
+        sim/defs.hpp sim/simulation.hpp sim/system.hpp
         view/defs.hpp)
     cmake_path(GET header PARENT_PATH folder)
     install(FILES ${PROJECT_SOURCE_DIR}/src/corda/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/corda/${folder}

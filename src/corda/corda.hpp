@@ -27,7 +27,6 @@
 #include "corda/media/defs.hpp"
 #include "corda/scene/scene.hpp"
 #include "corda/sim/defs.hpp"
-#include "corda/sim/given_motion.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/defs.hpp"

@@ -12,7 +12,6 @@
 #include "corda/core/image.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/scene/scene.hpp"
-#include "corda/sim/given_motion.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/view/defs.hpp"
 

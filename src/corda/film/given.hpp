@@ -1,7 +1,6 @@
 #pragma once
 
 #include "corda/scene/scene.hpp"
-#include "corda/sim/given_motion.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/sim/system.hpp"
 

@@ -12,12 +12,13 @@
 #include "corda/core/basics.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/sim/defs.hpp"
-#include "corda/sim/given_motion.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/defs.hpp"
 
 #pragma GCC visibility push(default)
 namespace corda {
+
+class GivenMotion;
 
 /// Method `auto`: the loosest method that keeps its estimate of the displayed error below a tolerance.
 struct AutoDef {

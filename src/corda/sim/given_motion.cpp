@@ -1,5 +1,3 @@
-#include "corda/sim/given_motion.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <string_view>
@@ -9,11 +7,10 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/text.hpp"
+#include "corda/sim/simulation.hpp"
 
 namespace corda {
 namespace {
-
-constexpr double kMaxDistanceMetres = 1e12;  // of a run, too: see Simulation
 
 [[noreturn]] void fail(const std::string& source, std::string key, std::string what, std::string remedy) {
     throw Error(ExitCode::kUsage,
@@ -22,17 +19,16 @@ constexpr double kMaxDistanceMetres = 1e12;  // of a run, too: see Simulation
 
 void check_times(const std::vector<double>& times_s, const std::string& source) {
     if (times_s.size() < 2) fail(source, "times", counted(std::ssize(times_s), "time"), "give at least two");
+    const auto key = [](std::size_t k) { return fmt::format("times[{}]", k); };
     for (std::size_t k = 0; k < times_s.size(); ++k) {
-        const std::string key = fmt::format("times[{}]", k);
         if (!std::isfinite(times_s[k]))
-            fail(source, key, fmt::format("{} is not a finite number", times_s[k]), "give times in s");
+            fail(source, key(k), fmt::format("{} is not a finite number", times_s[k]), "give times in s");
         if (k > 0 && times_s[k] - times_s[k - 1] < GivenMotion::kMinIntervalSeconds)
-            fail(source, key, fmt::format("{} s comes after {} s", times_s[k], times_s[k - 1]),
+            fail(source, key(k), fmt::format("{} s comes after {} s", times_s[k], times_s[k - 1]),
                  "give times that increase, by 1e-9 s or more");
     }
     if (times_s.front() > 0.0)
-        fail(source, "times[0]",
-             fmt::format("the first time is {} s, and a film starts at 0 s", times_s.front()),
+        fail(source, key(0), fmt::format("the first time is {} s, and a film starts at 0 s", times_s.front()),
              "subtract it from all times, or add the positions at 0 s");
 }
 
@@ -43,7 +39,7 @@ void check_positions(const std::vector<Vec2>& positions_m, std::size_t times, co
     const std::size_t particles = positions_m.size() / times;
     for (std::size_t k = 0; k < positions_m.size(); ++k) {
         const Vec2 at = positions_m[k];
-        if (std::max(std::abs(at.x), std::abs(at.y)) <= kMaxDistanceMetres && !std::isnan(at.x + at.y))
+        if (std::max(std::abs(at.x), std::abs(at.y)) <= kMaxCoordinateMetres && !std::isnan(at.x + at.y))
             continue;
         fail(source, fmt::format("positions[{}][{}]", k / particles, k % particles),
              fmt::format("[{}, {}] is not within -1e12 .. 1e12 m", at.x, at.y), "give finite positions in m");
@@ -60,6 +56,7 @@ GivenMotion::GivenMotion(std::vector<double> times_s, std::vector<Vec2> position
     : times_s_(std::move(times_s)), positions_m_(std::move(positions_m)), source_(std::move(source)) {
     check_times(times_s_, source_);
     check_positions(positions_m_, times_s_.size(), source_);
+    particle_count_ = positions_m_.size() / times_s_.size();
     hash_ = hash_text(hash_text(bytes_of(times_s_)) + hash_text(bytes_of(positions_m_)));
 }
 
@@ -99,7 +96,7 @@ State GivenMotion::at(double time_s) const {
         state.vx_m_s.push_back(velocity_m_s.x);
         state.vy_m_s.push_back(velocity_m_s.y);
     };
-    for (std::size_t i = 0; i < particle_count(); ++i) {
+    for (std::size_t i = 0; i < particle_count_; ++i) {
         if (is_given) {
             add(position_m(end, i), after == times_s_.end() ? Vec2{} : velocity_m_s(end, i));
             continue;

@@ -15,11 +15,8 @@
 namespace corda {
 namespace {
 
-/// A run with a coordinate beyond this has diverged.
-constexpr double kMaxDistanceMetres = 1e12;
-
 bool is_sound(const State& state) {
-    const auto near = [](double x_m) { return std::abs(x_m) < kMaxDistanceMetres; };  // false for NaN
+    const auto near = [](double x_m) { return std::abs(x_m) < kMaxCoordinateMetres; };  // false for NaN
     return std::ranges::all_of(state.x_m, near) && std::ranges::all_of(state.y_m, near);
 }
 

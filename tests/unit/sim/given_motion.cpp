@@ -1,9 +1,8 @@
-#include "corda/sim/given_motion.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 
+#include "corda/sim/simulation.hpp"
 #include "support/failure.hpp"
 
 namespace corda {
