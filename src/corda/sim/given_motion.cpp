@@ -30,6 +30,10 @@ void check_times(const std::vector<double>& times_s, const std::string& source) 
     if (times_s.front() > 0.0)
         fail(source, key(0), fmt::format("the first time is {} s, and a film starts at 0 s", times_s.front()),
              "subtract it from all times, or add the positions at 0 s");
+    if (times_s.back() <= 0.0)
+        fail(source, key(times_s.size() - 1),
+             fmt::format("the last time is {} s, and a film starts at 0 s", times_s.back()),
+             "subtract the first time from all times, or add positions at later ones");
 }
 
 void check_positions(const std::vector<Vec2>& positions_m, std::size_t times, const std::string& source) {

@@ -113,6 +113,11 @@ TEST(GivenMotion, RefusesWhatIsNoMotion) {
              {{0.002, 0.5},
               {{0, 0}, {0, 0}},
               "m.csv: times[0]: the first time is 0.002 s, and a film starts at 0 s; subtract it from all"},
+             {{-2.0, -1.0},
+              {{0, 0}, {0, 0}},
+              "m.csv: times[1]: the last time is -1 s, and a film starts at 0 s; subtract the first time "
+              "from all times, or add positions at later ones"},
+             {{-2.0, 0.0}, {{0, 0}, {0, 0}}, "m.csv: times[1]: the last time is 0 s, and a film starts"},
              {{0.0, 1.0},
               {{0, 0}, {0, 0}, {0, 0}},
               "m.csv: positions: 3 positions at 2 times; give one per particle and time"},
