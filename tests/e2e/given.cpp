@@ -92,8 +92,9 @@ TEST(GivenPositions, CannotBeRepeatedFromAFileAlone) {
     const std::string pictures = folder.file("%02d.png");
     const auto render = run_corda({"render", scene, "--positions", csv, "-o", pictures, "--frames", "0:3"});
     EXPECT_EQ(render.exit_code, 0);
-    EXPECT_THAT(render.err,
-                HasSubstr("--from cannot repeat the output, because its positions were given (hash "));
+    EXPECT_THAT(
+        render.err,
+        HasSubstr("--from cannot repeat the output, because its positions were given and not simulated "));
     const auto again = run_corda({"still", "--from", folder.file("00.png"), "-o", folder.file("again.png")});
     EXPECT_EQ(again.exit_code, 2);
     EXPECT_THAT(again.err, HasSubstr("does not carry its scene, because its positions were given"));
@@ -103,6 +104,11 @@ TEST(GivenPositions, CannotBeRepeatedFromAFileAlone) {
     EXPECT_EQ(run_corda({"render", scene, "--positions", csv, "-o", pictures, "--resume"}).exit_code, 0);
     EXPECT_EQ(run_corda({"render", scene, "--positions", other, "-o", pictures, "--resume"}).exit_code, 2);
     EXPECT_EQ(run_corda({"render", scene, "-o", pictures, "--resume"}).exit_code, 2);
+    // And those of another scene.
+    const auto styled = run_corda(
+        {"render", scene, "--positions", csv, "-o", pictures, "--resume", "--set", "style.theme=paper"});
+    EXPECT_EQ(styled.exit_code, 2);
+    EXPECT_THAT(styled.err, HasSubstr("it is of another frame or scene, or of other positions"));
 }
 
 TEST(GivenPositions, ThatDoNotFitAreRefusedInJsonToo) {

@@ -189,6 +189,14 @@ bool is_as_written(const Scene& scene) {
            values_of(parse_scene(scene.text, scene.source, scene.settings)) == values_of(scene);
 }
 
+/// Tells pictures of other scenes and positions apart. The encoder's threads change none.
+std::string hash_of(const Scene& scene) {
+    std::string text = scene.given->hash();
+    for (const auto& [key, value] : values_of(scene))
+        if (key != "video.threads") text += fmt::format("\n{} = {}", key, value);
+    return hash_text(text);
+}
+
 }  // namespace
 
 Provenance provenance_of(const Scene& scene) {
@@ -197,9 +205,8 @@ Provenance provenance_of(const Scene& scene) {
     provenance.name = shortened(printable(scene.name), kMaxName);
     if (!is_sound_name(provenance.name)) provenance.name = "scene";  // of a scene that code has filled in
     if (scene.given) {
-        // The hash tells the pictures of other positions apart.
-        provenance.left_out =
-            fmt::format("its positions were given (hash {}) and not simulated", scene.given->hash());
+        provenance.left_out = fmt::format(
+            "its positions were given and not simulated (hash of scene and positions: {})", hash_of(scene));
         return provenance;
     }
     std::size_t particles = 0;

@@ -34,6 +34,8 @@ std::string difference_text(const Scene& scene, const Provenance& made) {
     if (made.corda.empty()) return "it has no record of its scene";
     if (made.corda != version())
         return fmt::format("corda {} made it, and this is {}", made.corda, version());
+    if (scene.given)
+        return "it is of another frame or scene, or of other positions";  // it keeps a hash alone
     try {
         const auto changes = differences(values_of(scene), values_of(scene_of(made, "it")));
         if (!changes.empty()) return changes_text(changes);

@@ -128,7 +128,20 @@ TEST(GivenFilm, IsNoFilmThatItsSceneCouldRepeat) {
     give_motion(scene, motion_of(Film(scene)));
     const Provenance made = provenance_of(scene);
     EXPECT_EQ(made.scene, "");
-    EXPECT_THAT(made.left_out, HasSubstr(scene.given->hash()));
+    EXPECT_THAT(made.left_out, HasSubstr("positions were given and not simulated (hash of scene"));
+    const auto left_out_with = [&](const std::string& setting) {
+        Scene other = parse_scene(kGivenScene, "swing.toml", {setting});
+        other.given = scene.given;
+        return provenance_of(other).left_out;
+    };
+    // The hash is that of what changes pictures.
+    EXPECT_EQ(left_out_with("video.jobs=2"), made.left_out);
+    EXPECT_EQ(left_out_with("video.threads=2"), made.left_out);
+    EXPECT_NE(left_out_with("style.theme=paper"), made.left_out);
+    EXPECT_NE(left_out_with("rope[0].color=#123456"), made.left_out);
+    Scene same = scene;
+    give_motion(same, GivenMotion({0.0, 1.0}, std::vector<Vec2>(30)));
+    EXPECT_NE(provenance_of(same).left_out, made.left_out);
 }
 
 // Files.
