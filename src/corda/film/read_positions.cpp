@@ -143,7 +143,15 @@ double number_in(std::string_view cell, bool has_comma) {
     return status == std::errc{} && end == text.data() + text.size() ? value : std::nan("");
 }
 
-/// Reads a row into `row`.
+/// Decimal commas between commas make two cells of a number.
+[[noreturn]] void fail_of_more_cells(Place place, std::size_t column, char separator) {
+    place.column = column;
+    fail(std::move(place), "more cells than columns",
+         separator == ',' ? "give decimal points, or separate cells by semicolons"
+                          : "name all columns in the first line, or leave out the row");
+}
+
+/// Reads a row into `row`. It may end with a separator.
 void read_row(std::string_view line, const Columns& columns, const Place& place, std::vector<double>& row) {
     const std::size_t length = line.size();
     for (std::size_t c = 0; c < columns.place.size(); ++c) {
@@ -164,13 +172,12 @@ void read_row(std::string_view line, const Columns& columns, const Place& place,
                      "give a number, or leave out the row");
             row[*columns.place[c]] = value;
         }
-        if (end < line.size() || c + 1 == columns.place.size()) {
-            line.remove_prefix(std::min(end + 1, line.size()));
-            continue;
-        }
-        fail(place, fmt::format("{} of {} cells", c + 1, columns.place.size()),
-             "give all columns of the first line, or leave out the row");
+        if (end == line.size() && c + 1 < columns.place.size())
+            fail(place, fmt::format("{} of {} cells", c + 1, columns.place.size()),
+                 "give all columns of the first line, or leave out the row");
+        line.remove_prefix(std::min(end + 1, line.size()));
     }
+    if (!trimmed(line).empty()) fail_of_more_cells(place, length - line.size() + 1, columns.separator);
 }
 
 GivenMotion read_csv(const FileHandle& file, const std::string& path, std::string before) {

@@ -157,6 +157,7 @@ TEST(ReadPositions, FindsTheColumnsByTheirNames) {
              "t,x0,y0,x1,y1\r\n0,1,2,3,4\r\n\r\n0.5,5,6,7,8",
              "\xef\xbb\xbft;x0;y0;x1;y1;vx0_m_s\n0;1;2;3;4;nan\n0,5;5;6;7;8;\n",
              "energy,t,y1,x1,\"a,x1_y0\",8 kg_x0,tension0_n\n,0,4,3,2,1,\n9, 0.5 ,8,7,6,+5,9\n",
+             "t,x0,y0,x1,y1\n0,1,2,3,4, \n0.5,5,6,7,8,\n",
              "t\tx0\ty0\tx1\ty1\n0\t1\t2\t3\t4\n\"0.5\"\t5\t6\t7\t8\n",
          }) {
         SCOPED_TRACE(text);
@@ -193,6 +194,10 @@ TEST(ReadPositions, NamesThePlaceOfWhatIsWrong) {
         {"t,x0,y0,a_x0\n", ":1:1: two columns are x0; remove or rename one"},
         {names + "0,1,2\n1,1\n",
          ":3:1: 2 of 3 cells; give all columns of the first line, or leave out the row"},
+        {"t,x0,y0,x1,y1\n0,0,0,0,0\n1,0,0,0,0,0,5,-0,9\n",
+         ":3:11: more cells than columns; give decimal points, or separate cells by semicolons"},
+        {"t;x0;y0\n0;1;2\n1;2;3;;\n",
+         ":3:7: more cells than columns; name all columns in the first line, or leave out the row"},
         {names + "0,1,2\n1,nan,2\n",
          ":3:3: x0: nan is not a finite number; give a number, or leave out the row"},
         {names + "0,1,2\n1,1e999,2\n", ":3:3: x0: 1e999 is not a finite number"},
