@@ -8,7 +8,9 @@
 namespace corda {
 namespace {
 
+using test::quoted;
 using test::run_corda;
+using test::run_shell;
 using test::ScratchFolder;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -109,6 +111,25 @@ TEST(GivenPositions, CannotBeRepeatedFromAFileAlone) {
         {"render", scene, "--positions", csv, "-o", pictures, "--resume", "--set", "style.theme=paper"});
     EXPECT_EQ(styled.exit_code, 2);
     EXPECT_THAT(styled.err, HasSubstr("it is of another frame or scene, or of other positions"));
+}
+
+TEST(GivenPositions, ComeFromStandardInput) {
+    const ScratchFolder folder;
+    const std::string scene = folder.write("swing.toml", kGivenScene);
+    const auto plan = [](const std::string& input, const std::string& file) {
+        return run_shell(input + " | " + quoted(CORDA_PROGRAM) + " plan " + quoted(file) + " --positions -");
+    };
+    const std::string simulate = quoted(CORDA_PROGRAM) + " simulate " + quoted(scene) + " -o -";
+    const auto given = plan(simulate, scene);
+    EXPECT_EQ(given.exit_code, 0) << given.err;
+    EXPECT_THAT(given.out, HasSubstr("error estimate: none; the positions are those of stdin\n"));
+    EXPECT_THAT(plan("printf 't,x0,y0\\n0,0,0\\n1,0\\n'", scene).err, HasSubstr("stdin:3:1: 2 of 3 cells"));
+    const auto arrays = plan("printf 'PK'", scene);
+    EXPECT_EQ(arrays.exit_code, 2);
+    EXPECT_THAT(arrays.err, HasSubstr("stdin: an .npz cannot be read from standard input; give the path"));
+    const auto both = plan(simulate, "-");
+    EXPECT_EQ(both.exit_code, 2);
+    EXPECT_THAT(both.err, HasSubstr("SCENE and --positions are both standard input"));
 }
 
 TEST(GivenPositions, ThatDoNotFitAreRefusedInJsonToo) {

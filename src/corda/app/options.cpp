@@ -145,9 +145,9 @@ void add_positions(CLI::App& command, SceneOptions& scene) {
     command
         .add_option(
             "--positions", scene.positions,
-            "draw these positions in place of a simulation: CSV as simulate writes it (t, x0, y0, ...), "
-            "or .npz with the arrays times and positions; world.duration is their last time, if nothing "
-            "gives it")
+            "draw these positions in place of a simulation: CSV as simulate writes it (t, x0, y0, ...; - for "
+            "standard input), or .npz with the arrays times and positions; world.duration is their last "
+            "time, if nothing gives it")
         ->type_name("FILE");
 }
 
@@ -226,6 +226,8 @@ void add_fail_empty(CLI::App& command, bool& fails) {
 }
 
 Loaded load(const Console& console, const SceneOptions& options) {
+    if (options.path == "-" && options.positions == "-")
+        throw_usage("SCENE and --positions are both standard input; give one of them as a file");
     Loaded loaded;
     if (!options.from.empty()) loaded.origin = read_provenance(options.from);
     if (!options.from.empty() && loaded.origin.corda != version())

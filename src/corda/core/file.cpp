@@ -31,6 +31,10 @@ FileHandle open_for_reading(const std::string& path) {
     return file;
 }
 
+FileHandle open_standard_input() {
+    return FileHandle(::fdopen(::dup(STDIN_FILENO), "rb"));
+}
+
 std::size_t read_bytes(const FileHandle& file, const std::string& path, char* bytes, std::size_t count) {
     errno = 0;
     const std::size_t read = std::fread(bytes, 1, count, file.get());

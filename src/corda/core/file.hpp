@@ -24,6 +24,10 @@ void check_path(const std::string& path);
 /// while it waits for the writer of a pipe.
 [[nodiscard]] FileHandle open_for_reading(const std::string& path);
 
+/// Standard input, which stays open when the handle is closed: its number would go to the next file. Null,
+/// with a reason in errno, if there is none.
+[[nodiscard]] FileHandle open_standard_input();
+
 /// Reads up to `count` bytes into `bytes`; fewer only at the end of the file. Throws corda::Error (kIo).
 [[nodiscard]] std::size_t read_bytes(const FileHandle& file, const std::string& path, char* bytes,
                                      std::size_t count);

@@ -55,9 +55,9 @@ struct Motion;
 /// links are gone. Unless something else gives world.duration, the film ends at the last time.
 void give_motion(Scene& scene, GivenMotion motion);
 
-/// Reads positions: CSV as `corda simulate` writes it, or an .npz of NumPy with the arrays `times` (n) and
-/// `positions` (n, particles, 2) of float64. Throws corda::Error: kIo if the file cannot be read, kUsage with
-/// its place for what it lacks.
+/// Reads positions: CSV as `corda simulate` writes it, from standard input for "-", or an .npz of NumPy with
+/// the arrays `times` (n) and `positions` (n, particles, 2) of float64. Throws corda::Error: kIo if the file
+/// cannot be read, kUsage with its place for what it lacks.
 [[nodiscard]] GivenMotion read_positions(const std::string& path);
 
 /// A scene as pictures: plans a method, simulates the motion, fits the camera to it, and draws frames in any

@@ -1,5 +1,6 @@
 // Positions in files: CSV, and .npz of NumPy.
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -226,14 +227,19 @@ GivenMotion read_npz(const FileHandle& file, const std::string& path) {
 }  // namespace
 
 GivenMotion read_positions(const std::string& path) {
-    const FileHandle file = open_for_reading(path);
+    const bool is_stream = path == "-";
+    const std::string name = scene::source_name(path);
+    const FileHandle file = is_stream ? open_standard_input() : open_for_reading(path);
+    if (!file) fail_file("read", name, errno);
     std::string start(6, '\0');
-    start.resize(read_bytes(file, path, start.data(), start.size()));
-    if (start.starts_with("PK")) return read_npz(file, path);
+    start.resize(read_bytes(file, name, start.data(), start.size()));
+    if (start.starts_with("PK") && is_stream)
+        fail({name, 0, 0, {}}, "an .npz cannot be read from standard input", "give the path of a file");
+    if (start.starts_with("PK")) return read_npz(file, name);
     if (start == "\x93NUMPY")
-        fail({path, 0, 0, {}}, "this is one array",
+        fail({name, 0, 0, {}}, "this is one array",
              "save both by numpy.savez(FILE, times=times, positions=positions)");
-    return read_csv(file, path, start);
+    return read_csv(file, name, start);
 }
 
 }  // namespace corda

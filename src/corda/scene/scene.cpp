@@ -1,7 +1,6 @@
 #include "corda/scene/scene.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -98,17 +97,12 @@ void check_texts(const Sections& sections, const Scene& scene) {
                                                  : "give the path of a TOML file"});
 }
 
-/// Standard input stays open: closing it would give its number to the next file.
-FileHandle open_scene(const std::string& path) {
-    return FileHandle(path == "-" ? ::fdopen(::dup(STDIN_FILENO), "rb") : std::fopen(path.c_str(), "rb"));
-}
-
 }  // namespace
 
 std::string scene::read_file(const std::string& path) {
     check_path(path);
     const std::string name = source_name(path);
-    const FileHandle file = open_scene(path);
+    const FileHandle file = path == "-" ? open_standard_input() : FileHandle(std::fopen(path.c_str(), "rb"));
     if (!file) fail_io(name, errno);
     std::string text;
     std::array<char, 65536> block{};
