@@ -51,7 +51,7 @@ def test_the_frames_are_those_of_the_positions(film):
 def test_the_duration_is_that_of_the_times(film):
     open_film = corda.Film(text=OPEN, positions=film.positions, times=film.times)
     assert open_film.times[-1] < film.times[-1] and len(open_film) == 14
-    assert len(corda.Film(text=OPEN, positions=film.positions, times=film.times, duration=0.5)) == 15
+    assert len(corda.Film(text=OPEN, positions=film.positions, times=film.times, duration=len(film) / film.fps)) == 15
     assert len(corda.Film(text=OPEN, positions=film.positions, times=film.times, fps=60)) == 28
     with pytest.raises(corda.Error, match="positions end at .* give world.duration = ") as raised:
         corda.Film(text=SCENE, positions=film.positions, times=film.times, duration=1)
