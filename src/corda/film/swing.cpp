@@ -20,7 +20,7 @@ double root_of_cubic(double v0, double d0, double v1, double d1) {
     for (int i = 0; i < kHalvings; ++i) {
         const double middle = 0.5 * (low + high);
         const double value = v0 + middle * (d0 + middle * (second + middle * third));
-        ((value > 0.0) == (v1 > 0.0) ? high : low) = middle;
+        ((value < 0.0) == (v0 < 0.0) ? low : high) = middle;  // as include() tells a passage
     }
     return 0.5 * (low + high);
 }
@@ -35,9 +35,10 @@ double difference(double a_s, double b_s) {
 void Passages::include(double time_s, Vec2 arm_m, Vec2 velocity_m_s) {
     constexpr double kNarrow = 1e-9;
     const auto was = std::exchange(last_, Point{time_s, arm_m, velocity_m_s});
-    if (arm_m.y != 0.0) widest_ = std::max(widest_, std::abs(arm_m.x / arm_m.y));
+    const double width = arm_m.y != 0.0 ? std::abs(arm_m.x / arm_m.y) : 0.0;
+    widest_ = std::max(widest_, width);
     if (!was || (was->arm_m.x < 0.0) == (arm_m.x < 0.0) || was->arm_m.y >= 0.0 || arm_m.y >= 0.0) return;
-    if (std::exchange(widest_, 0.0) < kNarrow) return;
+    if (std::exchange(widest_, width) < kNarrow) return;  // this state belongs to the next swing too
     const double step_s = time_s - was->time_s;
     times_s_.push_back(was->time_s + step_s * root_of_cubic(was->arm_m.x, step_s * was->velocity_m_s.x,
                                                             arm_m.x, step_s * velocity_m_s.x));
@@ -54,11 +55,16 @@ Period Passages::period() const {
     double largest = 0.0;
     for (std::size_t i = 0; i + kLeast < count; ++i)
         largest = std::max(largest, difference(from_to_s(i, i + 2), from_to_s(i + 1, i + 3)));
-    if (count == kLeast) largest = 0.5 * difference(from_to_s(0, 1), from_to_s(1, 2));
-    if (largest > kPeriodsAgree)
+    double most = kPeriodsAgree;
+    if (count == kLeast) {
+        largest = difference(from_to_s(0, 1), from_to_s(1, 2));
+        most *= 2.0;
+    }
+    if (largest > most)
         return {{},
-                fmt::format("successive periods differ by {:.0f} %, more than {:.0f} %", 100.0 * largest,
-                            100.0 * kPeriodsAgree)};
+                fmt::format("{} differ by {:.1f} %, more than {:.0f} %",
+                            count == kLeast ? "the two halves" : "successive periods",
+                            0.1 * std::ceil(1000.0 * largest), 100.0 * most)};
     const std::size_t periods = (count - 1) / 2;
     return {from_to_s(0, 2 * periods) / static_cast<double>(periods)};
 }

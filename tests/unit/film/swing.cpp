@@ -55,7 +55,7 @@ TEST(Period, NeedsSuccessivePeriodsThatAgree) {
     // Of three passages, halves of 1.2 s and 0.8 s do not tell a period.
     const auto oblique = [](double t) { return 0.25 - 0.8 * std::sin(std::numbers::pi * (t - 0.5)); };
     EXPECT_THAT(passages_of(oblique, 2.7).period().reason,
-                testing::StartsWith("successive periods differ by"));
+                testing::MatchesRegex("the two halves differ by [0-9]+.[0-9] %, more than 20 %"));
     EXPECT_NEAR(passages_of(oblique, 10.0).period().seconds.value(), 2.0, 1e-6);
     // A swing whose periods become longer, by 2 % per half-period and by 16 %.
     const auto slowing = [](double rate) {
@@ -64,13 +64,41 @@ TEST(Period, NeedsSuccessivePeriodsThatAgree) {
     EXPECT_TRUE(passages_of(slowing(0.02), 10.0).period().seconds);
     const Period none = passages_of(slowing(0.15), 10.0).period();
     EXPECT_FALSE(none.seconds);
-    EXPECT_THAT(none.reason, testing::MatchesRegex("successive periods differ by [0-9]+ %, more than 10 %"));
+    EXPECT_THAT(none.reason,
+                testing::MatchesRegex("successive periods differ by [0-9]+.[0-9] %, more than 10 %"));
+}
+
+TEST(Period, TellsADifferenceAboveTheLimit) {
+    // Periods of 2 s and 2.22272 s differ by 10.02 %.
+    Passages passages;
+    double side = -1.0;
+    for (const double t : {1.0, 2.0, 3.0, 4.22272}) {
+        for (const double before_after : {-0.1, 0.1})
+            passages.include(t + before_after, {std::copysign(0.1, side * before_after), -1.0}, {side, 0.0});
+        side = -side;
+    }
+    EXPECT_EQ(passages.period().reason, "successive periods differ by 10.1 %, more than 10 %");
 }
 
 TEST(Period, NeedsAlternatingDirections) {
     const Period period = passages_of([](double t) { return 3.0 * t; }, 10.0).period();
     EXPECT_FALSE(period.seconds);
     EXPECT_EQ(period.reason, "two successive passages below the pin are in the same direction");
+}
+
+TEST(Passages, AreFoundAtStatesThatAreBelowThePin) {
+    constexpr double kRate = 0.5 * std::numbers::pi;
+    for (const double offset_m : {0.0, -1e-9, 1e-9, -1e-10, 1e-10}) {
+        Passages passages;
+        const double xs_m[] = {-1.0, 0.0, 1.0, 0.0};
+        const double speeds_m_s[] = {0.0, kRate, 0.0, -kRate};
+        for (int k = 0; k <= 12; ++k)
+            passages.include(k, {xs_m[k % 4] + offset_m, -1.0}, {speeds_m_s[k % 4], 0.0});
+        ASSERT_EQ(passages.times_s().size(), 6U) << offset_m;
+        for (std::size_t i = 0; i < 6; ++i)
+            EXPECT_NEAR(passages.times_s()[i], 1.0 + 2.0 * static_cast<double>(i), 1e-8) << offset_m;
+        EXPECT_NEAR(passages.period().seconds.value(), 4.0, 1e-8) << offset_m;
+    }
 }
 
 TEST(Passages, DoNotCountTheRoundingOfWhatHangsAtRest) {
