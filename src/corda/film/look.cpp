@@ -115,8 +115,10 @@ CameraDef fitted_camera(const Look& look, std::span<const MotionBounds> bounds) 
 }
 
 /// Raises labels above pins over what passes there at frame times. The camera is fitted to raised ones; then
-/// they are raised as that camera, given by a scene, would have them.
+/// they are raised as that camera, given by a scene, would have them. Where raised ones would take most of
+/// the picture, as over a rope that stands on its pin, the camera stays as it is.
 void raise_labels(const Motion& motion, std::span<const MotionBounds> bounds, Look& look) {
+    constexpr double kMostGrowth = 1.3;  // of the camera's height for raised labels
     const bool is_fitted = !look.track && !look.scene.camera.height_m;
     for (const bool is_first : {true, false}) {
         if (is_first && !is_fitted) continue;
@@ -127,7 +129,9 @@ void raise_labels(const Motion& motion, std::span<const MotionBounds> bounds, Lo
             room.include(state, look.map_at(state.time_s));
         });
         if (!room.raise_labels(is_first)) return;
-        if (is_first) look.camera = fitted_camera(look, bounds);
+        if (!is_first) continue;
+        const CameraDef raised = fitted_camera(look, bounds);
+        if (*raised.height_m <= kMostGrowth * *look.camera.height_m) look.camera = raised;
     }
 }
 

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "corda/core/cancel.hpp"
+
 namespace corda::view {
 namespace {
 
@@ -158,7 +160,11 @@ LabelRoom::LabelRoom(const TextArea& area, const SceneView& view, std::vector<Bo
       labels_(&labels),
       above_px_(labels.size(), area.height_px),
       is_taken_(labels.size(), std::vector<bool>(static_cast<std::size_t>(area.height_px))) {
-    for (BodyLabel& label : labels) label.raise_px = 0.0;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        labels[i].raise_px = 0.0;
+        if (is_above_pin(labels[i]))
+            above_.push_back({i, 0.5 * area.words.width_px(labels[i].text, area.em_px), {}});
+    }
 }
 
 bool LabelRoom::is_needed(std::span<const MotionBounds> bounds) const {
@@ -170,30 +176,42 @@ bool LabelRoom::is_needed(std::span<const MotionBounds> bounds) const {
 }
 
 void LabelRoom::include(const State& state, const Camera& camera) {
+    constexpr std::size_t kPairsPerUpdate = 50;  // of a line and a label, per update of count_work()
     const System& system = *view_->system;
-    for (std::size_t i = 0; i < labels_->size(); ++i) {
-        if (!is_above_pin((*labels_)[i])) continue;
-        const PixelPoint pin = camera.at(state, (*labels_)[i].particle);
-        above_px_[i] = std::min(above_px_[i], pin.y);
-        const auto from_pin = [&](std::size_t particle) {
-            const PixelPoint at = camera.at(state, particle);
-            return Vec2{at.x - pin.x, pin.y - at.y};
-        };
-        for (std::size_t b = 0; b < system.bodies.size(); ++b) {
-            const Body& body = system.bodies[b];
-            const BodyView& look = view_->bodies[b];
-            const double radius_px = std::max(look.radius_px, look.end_radius_px);
-            for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k)
-                if (system.has_bar_at(k, state.time_s))
-                    add_line(i, from_pin(system.bars[k].a), from_pin(system.bars[k].b), radius_px);
-            for (const Ball& ball : look.balls)
-                add_line(i, from_pin(ball.particle), from_pin(ball.particle), ball.radius_in(camera));
-        }
+    at_.resize(system.particle_count());
+    for (std::size_t k = 0; k < at_.size(); ++k) at_[k] = camera.at(state, k);
+    for (Above& above : above_) {
+        above.pin = at_[(*labels_)[above.label].particle];
+        above_px_[above.label] = std::min(above_px_[above.label], above.pin.y);
+    }
+    for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+        const Body& body = system.bodies[b];
+        const BodyView& look = view_->bodies[b];
+        const double radius_px = std::max(look.radius_px, look.end_radius_px);
+        count_work(1 + (body.link_count + look.balls.size()) * (1 + above_.size()) / kPairsPerUpdate);
+        for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k)
+            if (system.has_bar_at(k, state.time_s))
+                add_line(at_[system.bars[k].a], at_[system.bars[k].b], radius_px);
+        for (const Ball& ball : look.balls)
+            add_line(at_[ball.particle], at_[ball.particle], ball.radius_in(camera));
     }
 }
 
-void LabelRoom::add_line(std::size_t i, Vec2 a_px, Vec2 b_px, double radius_px) {
-    const double half_px = 0.5 * area_->words.width_px((*labels_)[i].text, area_->em_px) + radius_px;
+void LabelRoom::add_line(PixelPoint a, PixelPoint b, double radius_px) {
+    const auto [left_px, right_px] = std::minmax(a.x, b.x);
+    const double top_px = std::min(a.y, b.y) - radius_px;
+    for (const Above& above : above_) {
+        const double reach_px = above.half_px + radius_px + 1.0;  // more than rounding
+        if (top_px > above.pin.y + 1.0 || left_px > above.pin.x + reach_px ||
+            right_px < above.pin.x - reach_px)
+            continue;
+        add_line(above, {a.x - above.pin.x, above.pin.y - a.y}, {b.x - above.pin.x, above.pin.y - b.y},
+                 radius_px);
+    }
+}
+
+void LabelRoom::add_line(const Above& above, Vec2 a_px, Vec2 b_px, double radius_px) {
+    const double half_px = above.half_px + radius_px;
     if (a_px.x > b_px.x) std::swap(a_px, b_px);
     if (a_px.x > half_px || b_px.x < -half_px) return;
     const auto height_at = [&](double x_px) {
@@ -201,7 +219,7 @@ void LabelRoom::add_line(std::size_t i, Vec2 a_px, Vec2 b_px, double radius_px) 
     };
     const double from_px = a_px.x < -half_px ? height_at(-half_px) : a_px.y;
     const double to_px = b_px.x > half_px ? height_at(half_px) : b_px.y;
-    std::vector<bool>& rows = is_taken_[i];
+    std::vector<bool>& rows = is_taken_[above.label];
     const auto row = [&](double height_px) {
         return static_cast<std::size_t>(std::clamp(height_px, 0.0, static_cast<double>(rows.size())));
     };
@@ -226,8 +244,8 @@ bool LabelRoom::raise_labels(bool will_fit) {
                 label.raise_px = std::max(label.raise_px, (*labels_)[k].raise_px);
         const int least_px = rounded(distance_px(*area_, label, label.clear_px));
         if (is_free(least_px, least_px + text_px)) continue;
-        const int most_px =
-            will_fit ? static_cast<int>(rows.size()) : static_cast<int>(above_px_[i]) - text_px;
+        const double room_px = std::clamp(above_px_[i], 0.0, static_cast<double>(rows.size()));
+        const int most_px = will_fit ? static_cast<int>(rows.size()) : static_cast<int>(room_px) - text_px;
         for (int at_px = least_px + 1; at_px <= most_px; ++at_px) {
             if (!is_free(at_px - gap_px, at_px + text_px + gap_px)) continue;
             label.raise_px += at_px - least_px;

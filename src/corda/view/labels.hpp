@@ -68,8 +68,17 @@ class LabelRoom {
     [[nodiscard]] bool raise_labels(bool will_fit);
 
   private:
-    /// Marks what is drawn along a line, whose ends are to the right of and above the pin of label `i`.
-    void add_line(std::size_t i, Vec2 a_px, Vec2 b_px, double radius_px);
+    /// A label above a pin.
+    struct Above {
+        std::size_t label = 0;
+        double half_px = 0.0;  ///< half of its text's width
+        PixelPoint pin;        ///< in the included state
+    };
+
+    /// Marks what is drawn along a line for the labels that it passes over.
+    void add_line(PixelPoint a, PixelPoint b, double radius_px);
+    /// The same for one label: the ends are to the right of and above its pin.
+    void add_line(const Above& above, Vec2 a_px, Vec2 b_px, double radius_px);
     [[nodiscard]] bool is_above_pin(const BodyLabel& label) const {
         return label.from == label.particle && view_->system->is_pinned(label.particle);
     }
@@ -77,6 +86,8 @@ class LabelRoom {
     const TextArea* area_;
     const SceneView* view_;
     std::vector<BodyLabel>* labels_;
+    std::vector<Above> above_;
+    std::vector<PixelPoint> at_;               ///< the particles in the included state
     std::vector<double> above_px_;             ///< of each label: from its pin to the edge, at least
     std::vector<std::vector<bool>> is_taken_;  ///< of each label: rows of pixels above its pin, in its width
 };

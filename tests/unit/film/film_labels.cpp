@@ -84,6 +84,28 @@ TEST(FilmLabels, OfAPinKeepClearOfWhatRisesAboveIt) {
     EXPECT_GT(wide.look().overlay.labels.at(0).raise_px, 30.0);
 }
 
+TEST(FilmLabels, LeaveRoomForARopeThatStandsOnItsPin) {
+    const std::string rope = "hang = { links = 1, length = 1.0, angle_deg = 180.0 }\n";
+    const Film film(labelled(rope));
+    const Film plain(
+        parse_scene("schema = 1\n[world]\nduration = 2.0\n[[rope]]\n" + rope + "[video]\nsize = [320, 180]\n",
+                    "plain.toml"));
+    EXPECT_LT(*film.camera().height_m, 1.3 * *plain.camera().height_m);
+    const auto [label, scale] = label_at(film, 0.5);
+    EXPECT_FALSE(label.empty());
+    EXPECT_GE(label.y0, 0);
+    // A scene that gives this camera has the same pictures.
+    Scene frozen = film.scene();
+    frozen.camera = film.camera();
+    EXPECT_TRUE(test::equal_images(Film(frozen).still(0.5), film.still(0.5)));
+}
+
+TEST(FilmLabels, OfAPinFarAboveTheFrameStay) {
+    const Film film(labelled("hang = { links = 1, length = 1.0, angle_deg = 170.0 }\n",
+                             "[camera]\ncenter = [0, -1e9]\nheight = 0.01\n"));
+    EXPECT_EQ(film.look().overlay.labels.at(0).raise_px, 0.0);
+}
+
 TEST(FilmLabels, OfAPinKeepClearOfOtherRopes) {
     // The second rope swings by above the pin of the first one; it passes 0.1 m above it.
     const Film film(
