@@ -18,7 +18,7 @@ void start_as_given(const GivenMotion& given, System& system);
 [[nodiscard]] State given_state(const GivenMotion& given, double time_s, const System& system,
                                 const StateFields& fields);
 
-/// What the positions of a state tell: the largest strain.
+/// The figures that follow from the positions of a state: the largest strain.
 [[nodiscard]] Figures given_figures(const System& system, const State& state);
 
 }  // namespace corda::film

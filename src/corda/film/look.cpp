@@ -118,7 +118,7 @@ CameraDef fitted_camera(const Look& look, std::span<const MotionBounds> bounds) 
 /// they are raised as that camera, given by a scene, would have them. Where raised ones would take most of
 /// the picture, as over a rope that stands on its pin, the camera stays as it is.
 void raise_labels(const Motion& motion, std::span<const MotionBounds> bounds, Look& look) {
-    constexpr double kMostGrowth = 1.3;  // of the camera's height for raised labels
+    constexpr double kMaxGrowth = 1.3;  // of the camera's height for raised labels
     const bool is_fitted = !look.track && !look.scene.camera.height_m;
     for (const bool is_first : {true, false}) {
         if (is_first && !is_fitted) continue;
@@ -131,7 +131,7 @@ void raise_labels(const Motion& motion, std::span<const MotionBounds> bounds, Lo
         if (!room.raise_labels(is_first)) return;
         if (!is_first) continue;
         const CameraDef raised = fitted_camera(look, bounds);
-        if (*raised.height_m <= kMostGrowth * *look.camera.height_m) look.camera = raised;
+        if (*raised.height_m <= kMaxGrowth * *look.camera.height_m) look.camera = raised;
     }
 }
 

@@ -35,7 +35,7 @@ std::size_t little_endian(std::string_view bytes, std::size_t at) {
     return value;
 }
 
-/// What follows "'key': " in the header of an array; empty if it has none.
+/// The text after "'key': " in the header of an array; empty if it has none.
 std::string_view npy_value(std::string_view header, std::string_view key) {
     const std::size_t at = header.find(fmt::format("'{}': ", key));
     return at == std::string_view::npos ? std::string_view() : header.substr(at + key.size() + 4);

@@ -22,9 +22,9 @@
 namespace corda {
 namespace {
 
-constexpr std::size_t kMostPositionBytes = std::size_t{1} << 30;  // of the positions
-constexpr std::size_t kMostLineBytes = std::size_t{1} << 27;      // of a million particles
-constexpr std::size_t kShown = 40;                                // bytes of a bad value
+constexpr std::size_t kMaxPositionBytes = std::size_t{1} << 30;  // of the positions
+constexpr std::size_t kMaxLineBytes = std::size_t{1} << 27;      // of a million particles
+constexpr std::size_t kShown = 40;                               // bytes of a bad value
 
 [[noreturn]] void fail(Place place, std::string what, std::string remedy) {
     throw Error(ExitCode::kUsage, Problem{std::move(place), std::move(what), std::move(remedy)});
@@ -43,7 +43,7 @@ class Lines {
         while (true) {
             const std::size_t end = block_.find('\n', at_);
             line.append(block_, at_, end - at_);
-            if (line.size() > kMostLineBytes)
+            if (line.size() > kMaxLineBytes)
                 fail({path_, number_, 1, {}}, "the line is too long", "give CSV, or .npz");
             if (end != std::string::npos) {
                 at_ = end + 1;
@@ -199,16 +199,16 @@ GivenMotion read_csv(const FileHandle& file, const std::string& path, std::strin
                  "give times that increase, by 1e-9 s or more");
         times_s.push_back(row[0]);
         for (std::size_t i = 1; i < row.size(); i += 2) positions_m.push_back({row[i], row[i + 1]});
-        if (positions_m.size() * sizeof(Vec2) > kMostPositionBytes)
+        if (positions_m.size() * sizeof(Vec2) > kMaxPositionBytes)
             fail({path, 0, 0, {}},
-                 fmt::format("the positions take more than {} MiB", kMostPositionBytes >> 20U),
+                 fmt::format("the positions take more than {} MiB", kMaxPositionBytes >> 20U),
                  "give fewer times");
     }
     return {std::move(times_s), std::move(positions_m), path};
 }
 
 GivenMotion read_npz(const FileHandle& file, const std::string& path) {
-    const Npz arrays(file, path, kMostPositionBytes);
+    const Npz arrays(file, path, kMaxPositionBytes);
     const NpyArray times = arrays.read("times");
     const NpyArray positions = arrays.read("positions");
     if (times.shape.size() != 1)

@@ -60,7 +60,7 @@ GoldenOutcome failure(const std::string& message) {
     return {.matches = false, .written = false, .message = message};
 }
 
-/// What may have caused a difference from a kept picture: "; world.drag is 0.2 and was 0".
+/// The probable cause of a difference from a kept picture: "; world.drag is 0.2 and was 0".
 std::string cause_text(const std::string& path, const Film* film) {
     const PngInfo info = read_png_info(path);
     const Provenance made = provenance_in(info);

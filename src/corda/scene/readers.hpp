@@ -105,7 +105,7 @@ struct DefProblem {
 /// Ranges that are empty, or of plots that are not shown.
 [[nodiscard]] std::vector<DefProblem> problems_of(const PlotRangesDef& ranges,
                                                   const std::vector<LivePlot>& plots);
-/// What is asked for what is not shown, empty ranges, and trails of particles that no rope or net has.
+/// Keys of things that are not shown, empty ranges, and trails of particles that no rope or net has.
 [[nodiscard]] std::vector<DefProblem> problems_of(const StyleDef& style, const std::vector<RopeDef>& ropes,
                                                   const std::vector<NetDef>& nets);
 /// `bodies`: number of ropes and nets.

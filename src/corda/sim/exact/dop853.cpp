@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "corda/core/cancel.hpp"
-#include "corda/sim/forces/time_function.hpp"
 
 /// The coefficients of DOP853 as printed in E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
 /// Differential Equations I, 2nd ed., Springer 1993, appendix (30 digits; the order conditions hold to
@@ -252,7 +251,7 @@ Status Dop853::step() {
         const double wanted_s = StepControl::step_before_key(next_step_s_, key_s - time_s_);
         const double end_s = wanted_s == key_s - time_s_ ? key_s : time_s_ + wanted_s;
         const double step_s = end_s - time_s_;
-        if (!(step_s > control_.smallest_s) || is_reached(end_s, time_s_)) return Status::kDiverged;
+        if (control_.is_too_short(step_s, time_s_)) return Status::kDiverged;
         count_work(1 + y_.size());
         evaluate_stages(step_s);
         const double step_error = error(step_s);

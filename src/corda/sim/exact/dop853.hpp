@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "corda/sim/forces/time_function.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::sim {
@@ -67,6 +68,12 @@ struct StepControl {
     double smallest_s = 1e-14;  ///< the run has diverged if a step would have to be shorter
     /// The run has diverged if it would take more steps: a day of computing even for a short rope.
     static constexpr std::uint64_t kMaxSteps = 1'000'000'000;
+
+    /// True if the run has diverged, because the step from `time_s` is too short: not longer than smallest_s,
+    /// or a few roundings of the time, which shrinking would not change.
+    [[nodiscard]] bool is_too_short(double step_s, double time_s) const {
+        return !(step_s > smallest_s) || is_reached(time_s + step_s, time_s);
+    }
 
     /// The step to take where a step must end after `rest_s`. The last two are of one length, so that none is
     /// very short.

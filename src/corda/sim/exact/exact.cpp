@@ -58,6 +58,18 @@ void refuse_rigid_string_graph(const Body& body) {
                   "method exact moves a string of rigid links only if it is an open chain");
 }
 
+/// Pins that move alike rest in the frame in which such bodies are solved.
+void refuse_unlike_moves(const System& system, const Body& body) {
+    if (system.moves.empty()) return;
+    if (body.material.is_string)
+        throw Refusal(Refusal::Reason::kUnlikeMoves,
+                      "a string of rigid links moves only with pins that move alike");
+    if (!moves_as_chains(system, body))
+        throw Refusal(
+            Refusal::Reason::kUnlikeMoves,
+            "method exact moves rigid nets only with pins that move alike, and method rattle others too");
+}
+
 /// In the rotations of groups of bars if these can turn independently.
 std::unique_ptr<Dynamics> make_net_dynamics(const System& system, const Forces& forces) {
     try {
@@ -129,13 +141,7 @@ std::unique_ptr<Exact> Exact::make(const System& system, const Forces& forces, c
         return std::make_unique<OdePart>(system, forces, std::make_unique<ElasticDynamics>(system, forces),
                                          def.tolerance);
     }
-    if (!system.moves.empty() && body.material.is_string)
-        throw Refusal(Refusal::Reason::kUnlikeMoves,
-                      "a string of rigid links moves only with pins that move alike");
-    if (!system.moves.empty() && !moves_as_chains(system, body))
-        throw Refusal(
-            Refusal::Reason::kUnlikeMoves,
-            "method exact moves rigid nets only with pins that move alike, and method rattle others too");
+    refuse_unlike_moves(system, body);
     if (!body.material.is_string && !moves_as_chains(system, body)) {
         return std::make_unique<OdePart>(system, forces, make_net_dynamics(system, forces), def.tolerance);
     }

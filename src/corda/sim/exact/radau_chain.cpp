@@ -407,8 +407,7 @@ Status step(RadauChain& r, const Chains& chains, const Chain& chain, double* y) 
     double most = std::numeric_limits<double>::infinity();  // no growth after a rejected step
     for (;;) {
         r.step_s = std::min(r.step_s, chains.next_key_s(chain, r.end_s) - r.end_s);
-        if (!(r.step_s > r.control.smallest_s) || is_reached(r.end_s + r.step_s, r.end_s) ||
-            r.steps == StepControl::kMaxSteps)
+        if (r.control.is_too_short(r.step_s, r.end_s) || r.steps == StepControl::kMaxSteps)
             return Status::kDiverged;
         // Time and step agree to the last bit, so that no rounding of times adds up.
         r.step_s = (r.end_s + r.step_s) - r.end_s;
