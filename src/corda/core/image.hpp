@@ -21,9 +21,12 @@ struct Color {
     std::uint8_t b = 0;
     std::uint8_t a = 255;
 
-    /// Reads "#rgb", "#rgba", "#rrggbb", "#rrggbbaa", one of the sixteen basic names of CSS, such as "red",
-    /// or "transparent"; std::nullopt for any other text.
+    /// Reads "#rgb", "#rgba", "#rrggbb", "#rrggbbaa", one of the 148 names of CSS, such as "red" or
+    /// "steelblue", or "transparent"; std::nullopt for any other text.
     static std::optional<Color> parse(std::string_view text);
+
+    /// The names of CSS in alphabetical order.
+    static std::vector<std::string_view> names();
 
     /// "#rrggbb", or "#rrggbbaa" if it is not opaque.
     [[nodiscard]] std::string text() const;

@@ -254,7 +254,10 @@ class ValueChecker {
     }
 
     bool check_color(const std::string& text, const toml::node& node, const std::string& path) const {
-        return Color::parse(text) || fail(node, path, fmt::format("\"{}\" is not a colour", excerpt(text)));
+        if (Color::parse(text)) return true;
+        const auto meant = nearest(text, Color::names());
+        return fail(node, path, fmt::format("\"{}\" is not a colour", excerpt(text)),
+                    meant ? fmt::format("did you mean \"{}\"?", *meant) : "");
     }
 
     [[nodiscard]] std::string_view one_words() const {

@@ -161,7 +161,7 @@ pinned = [3] | 4:11 rope[0].pinned[0] | 3 is out of range; the rope has particle
 pinned = [-4] | 4:11 rope[0].pinned[0] | -4 is out of range
 pinned = [2, 0, -1] | 4:17 rope[0].pinned[2] | particle 2 is given twice; remove one | , 0, -1] => ]
 color = 3 | 4:9 rope[0].color | 3 is an integer, not text
-color = "redd" | 4:9 rope[0].color | "redd" is not a colour; give a colour such as "red", "#e8c07d", "#e8c07d80" (with alpha) or "transparent"
+color = "redd" | 4:9 rope[0].color | "redd" is not a colour; did you mean "red"?; give a colour such as "red", "#e8c07d", "#e8c07d80" (with alpha) or "transparent"
 width_px = 0 | 4:12 rope[0].width_px | 0 is not >= 0.1
 compliance = -1 | 4:14 rope[0].compliance | -1 is not >= 0
 compliance = 2e6 | 4:14 rope[0].compliance | is not <= 1e6; give
