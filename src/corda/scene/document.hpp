@@ -42,9 +42,10 @@ struct KeyStep {
 /// text.
 [[nodiscard]] std::optional<std::vector<KeyStep>> parse_key(std::string_view key);
 
-/// Puts `setting` into the document, making missing tables on its way. What it puts there has `place`,
-/// by default --set, and the setting as its source, so that messages about it name them. One that does not
-/// fit the document is a problem. Throws corda::Error (kUsage) if it is not key=value.
+/// Puts `setting` into the document, making missing tables on its way, or removes its key if the value is
+/// empty. What it puts there has `place`, by default --set, and the setting as its source, so that messages
+/// about it name them. A setting that does not fit the document is a problem. Throws corda::Error (kUsage) if
+/// it is not key=value.
 void apply_setting(toml::table& document, const Setting& setting, Problems& problems,
                    const std::string& place = "");
 

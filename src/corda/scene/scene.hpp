@@ -149,7 +149,8 @@ struct Scene {
 };
 
 /// One `--set key=value` of the command line, e.g. "video.fps=30" or "rope[0].mass=2". The value is read as
-/// TOML; one that is not TOML is taken as a string.
+/// TOML; one that is not TOML is taken as a string. An empty one removes the key, as if the scene did not
+/// give it.
 using Setting = std::string;
 
 /// Reads a scene file, or standard input for "-", with `settings` in place of what it says. Throws

@@ -74,6 +74,7 @@ class SettingWriter {
 
     void write(const std::vector<KeyStep>& steps, std::string_view text) {
         for (std::size_t i = 0; i + 1 < steps.size(); ++i) descend(steps[i], steps[i + 1].is_index());
+        if (text.empty()) return remove(steps.back());
         toml::table parsed = parse_value(text, label_);
         put(steps.back(), *parsed.get("value"));
     }
@@ -107,6 +108,16 @@ class SettingWriter {
             // A region of the same setting, because a message about an unknown key names the key's place.
             const toml::key key(step.name, toml::source_region(value.source()));
             as_table().insert_or_assign(key, std::move(value));
+        }
+    }
+
+    void remove(const KeyStep& step) {
+        if (step.is_index()) {
+            static_cast<void>(element(step));
+            node_->as_array()->erase(node_->as_array()->cbegin() + static_cast<std::ptrdiff_t>(step.index));
+        } else if (as_table().erase(step.name) == 0) {
+            extend_path(step);
+            fail("the scene does not give this key, so there is nothing to remove", "give a value");
         }
     }
 

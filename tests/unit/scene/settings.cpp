@@ -71,7 +71,20 @@ TEST(SceneSettings, AreNamedInMessagesAboutTheirValues) {
     EXPECT_THAT(error_of(rope_with(""), {"world.duration=1e12"}).message,
                 StartsWith("--set world.duration=1e12: world.duration: 1e+12 s at 60"));
     EXPECT_THAT(error_of(rope_with("mass = -1"), {"video.fps=30"}).message, StartsWith("swing.toml:4:8: "));
-    EXPECT_EQ(error_of(rope_with(""), {"video.fps="}).code, ExitCode::kInvalidScene);
+}
+
+TEST(SceneSettings, WithoutAValueRemoveTheKey) {
+    EXPECT_EQ(scene_with({"video.fps="}).video.fps.rational(), VideoDef{}.fps.rational());
+    EXPECT_EQ(scene_with({"video.fps=30", "video.fps="}).video.fps.rational(), VideoDef{}.fps.rational());
+    EXPECT_EQ(scene_with({"video="}).video.fps.rational(), VideoDef{}.fps.rational());
+    const std::string two = rope_with("") + rope_with("").substr(rope_with("").find("[[rope]]"));
+    EXPECT_EQ(parse_scene(two, "swing.toml").ropes.size(), 2U);
+    EXPECT_EQ(parse_scene(two, "swing.toml", {"rope[1]="}).ropes.size(), 1U);
+    EXPECT_EQ(error_of(rope_with(""), {"video.fps="}).message,
+              "--set video.fps=: video.fps: the scene does not give this key, so there is nothing to remove; "
+              "give a value");
+    EXPECT_THAT(error_of(rope_with(""), {"rope[0]="}).message, HasSubstr("rope"));
+    EXPECT_THAT(error_of(rope_with(""), {"rope[1]="}).message, HasSubstr("index 1 is out of range"));
 }
 
 TEST(SceneSettings, ThatDoNotFitTheFileAreInvalid) {
