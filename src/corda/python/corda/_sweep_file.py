@@ -120,8 +120,9 @@ def _is_plain(value):
 
 
 def nearest(word, known):
-    """The known word that a misspelt one probably stands for, or None."""
-    close = difflib.get_close_matches(word, known, 1, 0.7)
+    """The known word that a misspelt one, or the beginning of one, probably stands for; None if there is none."""
+    begun = [one for one in known if word and one.startswith(word)]
+    close = begun if len(begun) == 1 else difflib.get_close_matches(word, known, 1, 0.7)
     return close[0] if close else None
 
 
@@ -384,7 +385,9 @@ class _Reader:
     def _word(self, path, value, known, name=None):
         if isinstance(value, str) and value in known:
             return True
-        self._fail(path, f"{_described(value)}; give {', '.join(known)}", name)
+        meant = nearest(value, known) if isinstance(value, str) else None
+        remedy = f'did you mean "{meant}"?' if meant else f"give {', '.join(known)}"
+        self._fail(path, f"{_described(value)}; {remedy}", name)
         return False
 
     def _words(self, key, output, known, default):
@@ -464,7 +467,10 @@ def _parse(text, source):
         message = str(error)
         place = re.fullmatch(r"(.*) \(at line (\d+), column (\d+)\)", message, re.DOTALL)
         if place:
-            raise _error(f"{source}:{place[2]}:{place[3]}: {place[1]}", 3) from None
+            line = text.split("\n")[int(place[2]) - 1]
+            key = re.match(r"\s*([\w-]+(?:\[\d+\]|\.[\w-]+)*\[\d+\][\w.\[\]-]*)\s*=", line)
+            problem = f'a key with an index needs quotes; write "{short_text(key[1])}" = ...' if key else place[1]
+            raise _error(f"{source}:{place[2]}:{place[3]}: {problem}", 3) from None
         end = text.rstrip("\n").count("\n") + 1
         raise _error(f"{source}:{end}: {message.removesuffix(' (at end of document)')}", 3) from None
 
