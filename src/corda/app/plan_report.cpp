@@ -60,8 +60,9 @@ void warn_of_horizon(const Console& console, const Film& film) {
             ? ""
             : " of " + body_name(film.system(), static_cast<std::size_t>(first - plan.bodies.begin()));
     if (first->diverges) {
-        console.warning(fmt::format("the simulation{} diverges after {:.6g} s; {} may help", whose,
-                                    *plan.horizon_s, film::divergence_advice(film.system())));
+        const auto [cause, remedy] = film::divergence_of(film.motion());
+        console.warning(fmt::format("the simulation{} diverges after {:.6g} s{}; {} may help", whose,
+                                    *plan.horizon_s, cause, remedy));
     } else if (first->unchecked) {
         console.warning(fmt::format("the error estimate{} ends at {:.6g} s: {}", whose, *plan.horizon_s,
                                     *horizon_reason(*first)));

@@ -1,6 +1,7 @@
 #include "corda/film/motion.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -15,6 +16,7 @@
 #include "corda/film/look.hpp"
 #include "corda/film/motion_input.hpp"
 #include "corda/sim/auto/planner.hpp"
+#include "corda/sim/moving_pins.hpp"
 #include "corda/view/arrows.hpp"
 
 namespace corda::film {
@@ -26,10 +28,47 @@ namespace {
     const bool has_step = std::ranges::any_of(motion.plan.bodies, [](const BodyPlan& body) {
         return !std::holds_alternative<ExactDef>(body.method);
     });
-    throw_error(ExitCode::kDiverged,
-                "the simulation diverged before t = {:.6g} s (last good state at {:.6g} s); {} may help{}",
-                time_s, last_s, divergence_advice(motion.system),
-                has_step ? ", or a smaller solver.step" : "");
+    const Divergence divergence = divergence_of(motion);
+    throw Error(
+        ExitCode::kDiverged,
+        Problem{
+            {},
+            fmt::format("the simulation diverged before t = {:.6g} s (last good state at {:.6g} s{})", time_s,
+                        last_s, divergence.cause),
+            fmt::format("{} may help{}", divergence.remedy, has_step ? ", or a smaller solver.step" : "")});
+}
+
+/// Whose pins are farther apart at a time than the links between them reach, of chains of rigid links that
+/// nothing is cut from; empty if there are none.
+std::string pins_out_of_reach(const System& system, double time_s) {
+    const auto distance = [](Vec2 a, Vec2 b) { return sim::length(a.x - b.x, a.y - b.y); };
+    const auto place_of = [&](std::size_t pin) {
+        Vec2 place_m{system.x_m[pin], system.y_m[pin]};
+        for (const MoveDef& move : system.moves)
+            if (move.pin == pin) place_m = place_m + sim::displacement_of(move)(time_s);
+        return place_m;
+    };
+    if (system.has_events()) return "";
+    for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+        const Body& body = system.bodies[b];
+        if (!body.is_chain || body.material.compliance_1_n > 0.0) continue;
+        std::optional<std::size_t> last;
+        double reach_m = 0.0;
+        for (std::size_t k = 0; k < body.particle_count; ++k) {
+            const std::size_t i = body.first_particle + k;
+            if (k > 0) reach_m += system.bars[body.first_bar + k - 1].rest_m;
+            if (!system.is_pinned(i)) continue;
+            const double apart_m = last ? distance(place_of(i), place_of(*last)) : 0.0;
+            if (apart_m > reach_m)
+                return fmt::format(
+                    "; pins {} and {} of {} are then {:.4g} m apart, and the links between them reach {:.4g} "
+                    "m",
+                    *last - body.first_particle, k, body_name(system, b), apart_m, reach_m);
+            last = i;
+            reach_m = 0.0;
+        }
+    }
+    return "";
 }
 
 /// The times to record.
@@ -106,16 +145,21 @@ Plan run(Motion& motion, const Scene& scene, const OnProgress& on_progress) {
 
 }  // namespace
 
-std::string divergence_advice(const System& system) {
+Divergence divergence_of(const Motion& motion) {
+    const System& system = motion.system;
     constexpr double kUnequal = 1e6;
     double ratio = 1.0;
     for (const Body& body : system.bodies) ratio = std::max(ratio, mass_ratio(system, body));
-    std::string advice;
-    if (!system.moves.empty()) advice = "pins that stay within reach of each other, a compliance, ";
+    const std::size_t states = motion.recording->size();
+    const double next_s = motion.diverges() ? motion.timeline->time_s(states) : motion.duration_s;
+    Divergence divergence{.cause = pins_out_of_reach(system, next_s), .remedy = ""};
+    if (!system.moves.empty())
+        divergence.remedy = "pins that stay within reach of each other, a compliance, ";
     if (ratio >= kUnequal)
-        advice +=
+        divergence.remedy +=
             fmt::format("less unequal masses of free particles (they differ by a factor of {:.2g}), ", ratio);
-    return advice + "less speed or force";
+    divergence.remedy += "less speed or force";
+    return divergence;
 }
 
 double Motion::end_s() const {

@@ -67,7 +67,11 @@ struct Motion : NonCopyable {
 /// on_progress returns false, kIo without room on the disk for a motion that exceeds the memory.
 [[nodiscard]] std::shared_ptr<const Motion> simulate(const Scene& scene, const RecordDef& def);
 
-/// Changes of a system that may keep it from diverging, in words.
-[[nodiscard]] std::string divergence_advice(const System& system);
+/// Why a motion diverges, and what may keep it from that, in words.
+struct Divergence {
+    std::string cause;   ///< "; pins 0 and 2 of rope 0 are then ..."; empty if it is unknown
+    std::string remedy;  ///< "less speed or force"
+};
+[[nodiscard]] Divergence divergence_of(const Motion& motion);
 
 }  // namespace corda::film

@@ -136,6 +136,27 @@ TEST(Motions, ThatDivergeEndEarly) {
     EXPECT_FALSE(motion_by("method = \"rattle\"")->diverges());
 }
 
+TEST(Motions, NameThePinsThatPullALinkApart) {
+    const Scene scene = parse_scene(R"(schema = 1
+[world]
+duration = 3.0
+[[rope]]
+hang = { links = 1, length = 1.0 }
+[[rope]]
+points = [[0, 0], [0.3, -0.4], [0.6, 0]]
+pinned = [0, -1]
+moves = [{ pin = -1, path = [{ t = 0.0, by = [0.0, 0.0] }, { t = 2.0, by = [2.0, 0.0] }] }]
+)",
+                                    "a");
+    const auto motion = simulate(scene, {});
+    ASSERT_TRUE(motion->diverges());
+    EXPECT_EQ(divergence_of(*motion).cause,
+              "; pins 0 and 2 of rope 1 are then 1.02 m apart, and the links between them reach 1 m");
+    const test::Failure failure = failure_of([&] { std::ignore = motion->at(3.0); });
+    EXPECT_NE(failure.message.find("of rope 1 are then"), std::string::npos) << failure.message;
+    EXPECT_NE(failure.message.find("; pins that stay within reach of each other"), std::string::npos);
+}
+
 TEST(Motions, ReportTheirProgress) {
     std::vector<std::int64_t> heard;
     RecordDef def;
