@@ -219,6 +219,11 @@ TEST_F(Messages, WarnOfTextsThatNoFrameShows) {
                           "at 1 s, so that no frame shows the text; give an earlier time, or a "
                           "longer world.duration"));
     EXPECT_THAT(told("0.9"), Not(HasSubstr("overlay.texts")));
+    EXPECT_THAT(told("0.5,to=0.9,fade=0.3"), HasSubstr("overlay.texts[1].fade: 0.3 s is too long for a text "
+                                                       "that is there for 0.4 s, so that it is never "
+                                                       "fully visible; give at most 0.2"));
+    EXPECT_THAT(told("0.5,to=0.9,fade=0.19"), Not(HasSubstr("overlay.texts")));
+    EXPECT_THAT(told("0.5,fade=0.5"), Not(HasSubstr("overlay.texts")));
 }
 
 TEST_F(Messages, WarnOfEventsAfterTheEnd) {
@@ -232,6 +237,9 @@ TEST_F(Messages, WarnOfEventsAfterTheEnd) {
     EXPECT_THAT(told("rope[0].release=[{pin=0,t=3}]"), HasSubstr("rope[0].release[0].t: 3 s is"));
     EXPECT_THAT(told("rope[0].moves=[{pin=0,path=[{t=2,by=[0,0]},{t=3,by=[1,0]}]}]"),
                 HasSubstr("rope[0].moves[0].path[0].t: 2 s is"));
+    EXPECT_THAT(told("camera.path=[{t=0,height=1},{t=1.5,height=2},{t=2,height=3}]"),
+                HasSubstr("camera.path[1].t: 1.5 s is"));
+    EXPECT_THAT(told("camera.path=[{t=0,height=1},{t=1.5,height=2}]"), Not(HasSubstr("end of the film")));
     EXPECT_THAT(told("rope[0].cut=[{link=0,t=0.9}]"), Not(HasSubstr("end of the film")));
 }
 

@@ -11,19 +11,30 @@
 namespace corda::app {
 namespace {
 
-/// Warns of texts that no frame shows. They are no error: a shorter film may be a preview.
+/// Warns of texts that no frame shows, or none in full. They are no error: a shorter film may be a preview.
 void warn_of_unseen_texts(const Console& console, const Scene& scene) {
+    const double end_s = scene.world.duration_s;
     for (std::size_t i = 0; i < scene.overlay.texts.size(); ++i) {
-        const double from_s = scene.overlay.texts[i].from_s;
-        if (from_s < scene.world.duration_s) continue;
-        console.warning(fmt::format(
-            "{}: overlay.texts[{}].from: {} s is not before the end of the film at {} s, so that no "
-            "frame shows the text; give an earlier time, or a longer world.duration",
-            scene.source, i, from_s, scene.world.duration_s));
+        const OverlayTextDef& text = scene.overlay.texts[i];
+        // A text fades in, and out if it ends before the film.
+        const double fades = text.to_s ? 2.0 : 1.0;
+        const double shown_s = text.to_s.value_or(end_s) - text.from_s;
+        if (text.from_s >= end_s) {
+            console.warning(fmt::format(
+                "{}: overlay.texts[{}].from: {} s is not before the end of the film at {} s, so that no "
+                "frame shows the text; give an earlier time, or a longer world.duration",
+                scene.source, i, text.from_s, end_s));
+        } else if (fades * text.fade_s > shown_s) {
+            console.warning(
+                fmt::format("{}: overlay.texts[{}].fade: {} s is too long for a text that is there for "
+                            "{:.6g} s, so that it is never fully "
+                            "visible; give at most {:.6g}",
+                            scene.source, i, text.fade_s, shown_s, shown_s / fades));
+        }
     }
 }
 
-/// Warns of pins let go, links cut and paths of pins that begin when the film is over: no error, as above.
+/// Warns of pins let go, links cut and paths that begin when the film is over: no error, as above.
 void warn_of_late_events(const Console& console, const Scene& scene) {
     const double end_s = scene.world.duration_s;
     std::string first;
@@ -44,6 +55,9 @@ void warn_of_late_events(const Console& console, const Scene& scene) {
         look_at_body(fmt::format("rope[{}]", i), scene.ropes[i]);
     for (std::size_t i = 0; i < scene.nets.size(); ++i)
         look_at_body(fmt::format("net[{}]", i), scene.nets[i]);
+    const std::vector<CameraKeyDef>& path = scene.camera.path;
+    for (std::size_t i = 0; i + 1 < path.size(); ++i)
+        look(fmt::format("camera.path[{}].t", i), path[i].time_s);
     if (late == 0) return;
     console.warning(fmt::format(
         "{}: {} not before the end of the film at {} s, so that nothing happens{}; give an earlier time, or "
