@@ -120,13 +120,15 @@ CameraDef fitted_camera(const Look& look, std::span<const MotionBounds> bounds) 
 void raise_labels(const Motion& motion, std::span<const MotionBounds> bounds, Look& look) {
     constexpr double kMaxGrowth = 1.3;  // of the camera's height for raised labels
     const bool is_fitted = !look.track && !look.scene.camera.height_m;
+    const bool moves = look.track || !motion.system.moves.empty();
     for (const bool is_first : {true, false}) {
         if (is_first && !is_fitted) continue;
         view::LabelRoom room(look.overlay.area, look.view, look.overlay.labels);
         if (!room.is_needed(bounds)) return;
         motion.for_each(frame_times_s(look.scene, motion), [&](const State& state, const Figures&) {
             check_cancelled();
-            room.include(state, look.map_at(state.time_s));
+            room.include(state, look.map_at(state.time_s),
+                         moves ? look.paths.to(state) : std::vector<view::Trail>());
         });
         if (!room.raise_labels(is_first)) return;
         if (!is_first) continue;
@@ -273,8 +275,8 @@ Look look_at(const Scene& scene, const Motion& motion) {
     } else if (scene.camera.moves()) {
         look.track = track_of_path(look);
     }
-    raise_labels(motion, bounds, look);
     look.paths = paths_of(scene, motion);
+    raise_labels(motion, bounds, look);
     if (scene.overlay.energy) look.energy_zero_j = energy_zero_j(scene, motion);
     return look;
 }

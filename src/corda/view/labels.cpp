@@ -175,7 +175,7 @@ bool LabelRoom::is_needed(std::span<const MotionBounds> bounds) const {
     });
 }
 
-void LabelRoom::include(const State& state, const Camera& camera) {
+void LabelRoom::include(const State& state, const Camera& camera, std::span<const Trail> trails) {
     constexpr std::size_t kPairsPerUpdate = 50;  // of a line and a label, per update of count_work()
     const System& system = *view_->system;
     at_.resize(system.particle_count());
@@ -194,6 +194,15 @@ void LabelRoom::include(const State& state, const Camera& camera) {
                 add_line(at_[system.bars[k].a], at_[system.bars[k].b], radius_px);
         for (const Ball& ball : look.balls)
             add_line(at_[ball.particle], at_[ball.particle], ball.radius_in(camera));
+    }
+    for (const Trail& trail : trails) {
+        count_work(1 + trail.size() * (1 + above_.size()) / kPairsPerUpdate);
+        for (std::size_t k = 1; k < trail.size(); ++k) {
+            const Vec2 a_m = trail[k - 1].at_m;
+            const Vec2 b_m = trail[k].at_m;
+            add_line({camera.x_px(a_m.x), camera.y_px(a_m.y)}, {camera.x_px(b_m.x), camera.y_px(b_m.y)},
+                     view_->rope_width_px);
+        }
     }
 }
 

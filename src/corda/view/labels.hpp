@@ -53,7 +53,7 @@ struct LabelPlace {
 /// Adds a label; one far outside the frame is left out.
 void draw_label(const TextArea& area, const BodyLabel& label, const LabelPlace& place, DrawList& list);
 
-/// The room above pins that ropes, nets and balls leave for labels during a motion.
+/// The room above pins that ropes, nets, balls and trails leave for labels during a motion.
 class LabelRoom {
   public:
     /// For labels of pins alone; others stay as they are. None is raised at first. The arguments must outlive
@@ -62,7 +62,8 @@ class LabelRoom {
 
     /// False if no label is above a pin over which particles within these bounds rise.
     [[nodiscard]] bool is_needed(std::span<const MotionBounds> bounds) const;
-    void include(const State& state, const Camera& camera);
+    /// `trails`: to the state; where neither pins nor the camera move, earlier states have their places.
+    void include(const State& state, const Camera& camera, std::span<const Trail> trails);
     /// Raises labels that something passes to where nothing does; true if there are any. `will_fit`: the
     /// camera will be fitted to the raised ones; otherwise they are only raised within the frame.
     [[nodiscard]] bool raise_labels(bool will_fit);
