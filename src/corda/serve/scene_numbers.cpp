@@ -60,7 +60,7 @@ class Collector {
         using scene::Kind;
         if (!node.is_number() || key == nullptr) return;
         const bool is_integer = key->type.kind == Kind::kInteger;
-        const bool is_index = is_integer && key->type.forms == scene::kList;
+        const bool is_index = is_integer && (key->type.forms == scene::kList || key->name == "pin");
         if ((key->type.kind != Kind::kNumber && !is_integer) || is_index) return;
         const double value = scene::number_of(node);
         if (!std::isfinite(value)) return;

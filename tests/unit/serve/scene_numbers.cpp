@@ -26,6 +26,7 @@ pinned = [0]
 [[rope]]
 points = [[0, 0], [1, 0]]
 compliance = 1e-3
+release = [{ pin = 0, t = 1.5 }]
 [video]
 fps = 30
 )";
@@ -37,10 +38,11 @@ std::vector<std::string> keys_of(const char* text) {
 }
 
 TEST(SceneNumbers, AreThoseOfMotionAndPictureInOrder) {
-    EXPECT_THAT(keys_of(kManyNumbers),
-                ElementsAre("world.gravity[0]", "world.gravity[1]", "world.duration", "rope[0].hang.links",
-                            "rope[0].hang.length", "rope[0].hang.angle_deg", "rope[0].mass[0]",
-                            "rope[0].mass[1]", "rope[0].mass[2]", "rope[0].mass[3]", "rope[1].compliance"));
+    EXPECT_THAT(
+        keys_of(kManyNumbers),
+        ElementsAre("world.gravity[0]", "world.gravity[1]", "world.duration", "rope[0].hang.links",
+                    "rope[0].hang.length", "rope[0].hang.angle_deg", "rope[0].mass[0]", "rope[0].mass[1]",
+                    "rope[0].mass[2]", "rope[0].mass[3]", "rope[1].compliance", "rope[1].release[0].t"));
     const SceneNumber links = numbers_of(kManyNumbers, "a.toml")[3];
     EXPECT_EQ(links.value, 3.0);
     EXPECT_TRUE(links.is_integer);
