@@ -252,6 +252,9 @@ def test_curves_have_the_colours_of_the_scene_on_paper():
 
     assert colors(rope + "color = \"#123456\"\n" + rope) == ["#123456", "#0072b2"]
     assert colors(rope, "[style]\npalette = [\"#123456\"]\n") == ["#123456"]
+    copies = rope + "copies = { count = 3, angle_deg = 5.0 }\n[style]\npalette = [\"#000000\", \"#204060\"]\n"
+    ax = corda.plot.angle(film(f"[world]\nduration = 0.1\n{copies}"))
+    assert [line.get_color() for line in ax.get_lines()[:3]] == ["#000000", "#102030", "#204060"]
     # White, two of one colour, and colours that tell speed: the colours of plots.
     assert colors(rope + "color = \"white\"\n") == ["#0072b2"]
     assert colors(rope + rope, "[style]\npalette = [\"#123456\"]\n") == ["#0072b2", "#d55e00"]

@@ -240,7 +240,7 @@ def test_the_theme_is_paper_unless_the_scene_chooses(tmp_path):
 
     def ground(style, own=""):
         film = corda.Film(text="schema = 1\n[world]\nduration = 0.1\n" + rope + own + style, size=(160, 120))
-        film.save_still(tmp_path / "a.png", 0.0, width_mm=20, force=True)
+        film._film.save_report_still(str(tmp_path / "a.png"), [0.0], 20.0, 9.0, True)
         return corda.read_png(tmp_path / "a.png")[2, 2, :3].tolist()
 
     assert ground("") == [255, 255, 255]
@@ -248,6 +248,15 @@ def test_the_theme_is_paper_unless_the_scene_chooses(tmp_path):
     assert ground("[style]\npalette = [\"#c026d3\"]\n") == [255, 255, 255]
     assert ground("[style]\npalette = [\"#c026d3\", \"#fff2a8\"]\n")[0] < 40
     assert ground("", "color = \"white\"\n")[0] < 40
+
+
+def test_a_still_in_print_is_that_of_the_program(tmp_path):
+    scene = tmp_path / "scene.toml"
+    scene.write_text(SCENE + "[overlay]\nplots = [\"angle\"]\n")
+    corda.Film(scene).save_still(tmp_path / "a.png", 0.5, width_mm=85, ppi=150)
+    subprocess.run([os.environ["CORDA_PROGRAM"], "still", scene, "--at", "0.5", "--width-mm", "85", "--ppi", "150", "-o",
+                    tmp_path / "b.png"], check=True, capture_output=True)
+    assert np.array_equal(corda.read_png(tmp_path / "a.png"), corda.read_png(tmp_path / "b.png"))
 
 
 def test_a_still_has_a_width_in_print(tmp_path):
@@ -259,13 +268,16 @@ def test_a_still_has_a_width_in_print(tmp_path):
     assert 'width="85mm"' in (tmp_path / "a.svg").read_text()
     film.save_still(tmp_path / "b.png", 0.5)
     assert np.array_equal(corda.read_png(tmp_path / "b.png"), film.still(0.5))
+    film.save_still(tmp_path / "c.png", 0.5, width_mm=20, ppi=96)
+    assert corda.read_png(tmp_path / "c.png").shape == (43, 76, 4)
     tall = corda.Film(text=SCENE, size=(100, 10000))
-    tall.save_still(tmp_path / "tall.png", 0, width_mm=85)
+    tall._film.save_report_still(str(tmp_path / "tall.png"), [0.0], 85.0, 9.0, False)
     assert corda.read_png(tmp_path / "tall.png").shape == (1406, 1004, 4)  # fits a page
     for call, code in ((lambda: film.save_still(tmp_path / "a.png", 0), 6), (lambda: film.save_still(tmp_path / "a.bmp", 0), 2),
-                       (lambda: film.save_still(tmp_path / "c.png", 9), 2), (lambda: film.save_still(tmp_path / "c.png", []), 2),
-                       (lambda: film.save_still(tmp_path / "c.png", 0, width_mm=0), 2),
-                       (lambda: film.save_still(tmp_path / "c.png", 0, width_mm=85, font_pt=0), 2)):
+                       (lambda: film.save_still(tmp_path / "d.png", 9), 2), (lambda: film.save_still(tmp_path / "d.png", []), 2),
+                       (lambda: film.save_still(tmp_path / "d.png", 0, width_mm=0), 2),
+                       (lambda: film.save_still(tmp_path / "d.png", 0, width_mm=85, font_pt=0), 2), (lambda: film.save_still(tmp_path / "d.png", 0, ppi=0), 2),
+                       (lambda: tall.save_still(tmp_path / "d.png", 0, width_mm=85), 2)):
         with pytest.raises(corda.Error) as raised:
             call()
         assert raised.value.code == code, raised.value

@@ -157,7 +157,10 @@ GlInfo Film::gl() const {
 
 Film Film::with_look(const Scene& scene) const {
     const Scene& own = this->scene();
-    if (!scene.overlay.plots.empty() || (scene.overlay.energy && !own.overlay.energy) ||
+    const bool has_plots = std::ranges::all_of(scene.overlay.plots, [&own](LivePlot plot) {
+        return std::ranges::find(own.overlay.plots, plot) != own.overlay.plots.end();
+    });
+    if (!has_plots || (scene.overlay.energy && !own.overlay.energy) ||
         scene.style.color_by != own.style.color_by || scene.style.arrows != own.style.arrows ||
         scene.style.trail_s > own.style.trail_s)
         throw Error(ExitCode::kInternal, "another look of a film needs what its motion does not have");

@@ -134,9 +134,9 @@ class Film {
     /// The OpenGL driver. Throws kNoGl.
     [[nodiscard]] GlInfo gl() const;
 
-    /// The same motion in pictures of another size, style or overlay, without a plot and without another
-    /// simulation. `scene` has the bodies and the world of the film's scene. Throws corda::Error (kInternal)
-    /// for another colouring, other arrows, a longer trail, an energy or a plot.
+    /// The same motion in pictures of another size, style or overlay, without another simulation. `scene` has
+    /// the bodies and the world of the film's scene. Throws corda::Error (kInternal) for another colouring,
+    /// other arrows, a longer trail, or an energy or a plot that the film's scene does not have.
     [[nodiscard]] Film with_look(const Scene& scene) const;
 
     // The values that a film consists of; for this library's own use.

@@ -12,6 +12,7 @@
 #include <corda/sim/recording.hpp>
 #include <corda/sim/solver.hpp>
 #include <corda/view/colors.hpp>
+#include <corda/view/scene_view.hpp>
 #include <corda/view/words.hpp>
 
 #include <pybind11/stl.h>
@@ -28,7 +29,8 @@
 namespace corda::python {
 namespace {
 
-constexpr double kPrintPpi = 300.0;
+constexpr double kReportPpi = 300.0;
+constexpr double kPrintPt = 8.0;
 constexpr double kScreenPpi = 96.0;
 constexpr double kPointsPerInch = 72.0;
 
@@ -64,14 +66,12 @@ StyleDef style_in_print(const Scene& scene) {
 
 /// The colour of each body in print as "#rrggbb"; empty if it does not show on white, or colours tell
 /// something else than bodies.
-std::vector<std::string> curve_colors(const Scene& scene, std::size_t count) {
+std::vector<std::string> curve_colors(const Scene& scene, const System& system) {
     const StyleDef style = style_in_print(scene);
-    const std::vector<Color> palette = view::theme_colors(style).palette;
+    const view::SceneView drawn = view::make_scene_view(system, {}, style, scene.body_styles,
+                                                        scene.video.width_px, scene.video.height_px, {});
     std::vector<std::string> texts;
-    std::size_t next = 0;
-    for (std::size_t b = 0; b < count; ++b) {
-        const BodyStyleDef own = b < scene.body_styles.size() ? scene.body_styles[b] : BodyStyleDef{};
-        Color color = own.color ? *own.color : palette[next++ % palette.size()];
+    for (Color color : view::body_colors(drawn)) {
         color.a = 255;
         const bool is_usable = style.color_by == ColorBy::kBody && shows_on_white(color);
         texts.push_back(is_usable ? color.text() : "");
@@ -79,9 +79,9 @@ std::vector<std::string> curve_colors(const Scene& scene, std::size_t count) {
     return texts;
 }
 
-/// The look of a scene in print: its shape, a width in millimetres at kPrintPpi, letters of that size and no
-/// live plot. What the scene says in pixels keeps its share of the width.
-Scene look_in_print(const Scene& scene, double width_mm, double letter_pt) {
+/// The look of a scene in a report: its shape, a width in millimetres at kReportPpi, letters of that size and
+/// no live plot. What the scene says in pixels keeps its share of the width.
+Scene look_in_report(const Scene& scene, double width_mm, double letter_pt) {
     // Limits of height over width, so that a picture fits a page.
     constexpr double kFlattest = 0.2;
     constexpr double kTallest = 1.4;
@@ -89,14 +89,35 @@ Scene look_in_print(const Scene& scene, double width_mm, double letter_pt) {
     look.style = style_in_print(scene);
     VideoDef& video = look.video;
     const double shape = std::clamp(1.0 * video.height_px / video.width_px, kFlattest, kTallest);
-    const double factor = kPrintPpi * width_mm / kMmPerInch / video.width_px;
+    const double factor = kReportPpi * width_mm / kMmPerInch / video.width_px;
     video.width_px = static_cast<int>(std::lround(video.width_px * factor));
     video.height_px = static_cast<int>(std::lround(shape * video.width_px));
     scale_px(look, factor);
     look.overlay.plots.clear();
     look.overlay.plot_range = {};
     if (!look.overlay.energy) look.overlay.energy_zero = EnergyZero::kStart;
-    look.overlay.text_px = letter_pt / kPointsPerInch * kPrintPpi;
+    look.overlay.text_px = letter_pt / kPointsPerInch * kReportPpi;
+    return look;
+}
+
+/// The look of a scene in a width in millimetres, as `corda still --width-mm` gives it.
+Scene look_in_print(const Scene& scene, double width_mm, double pixels_per_inch,
+                    std::optional<double> letter_pt) {
+    Scene look = scene;
+    VideoDef& video = look.video;
+    const double width_px = std::round(width_mm / kMmPerInch * pixels_per_inch);
+    const double height_px = std::round(width_px * video.height_px / video.width_px);
+    if (std::max(width_px, height_px) > kMaxSidePx ||
+        !is_picture_size(std::lround(width_px), std::lround(height_px)))
+        throw_usage(
+            "width_mm {} at {} pixels per inch is {}x{} pixels, not 1 .. {} per side and {} in all; choose "
+            "another "
+            "width or ppi",
+            width_mm, pixels_per_inch, width_px, height_px, kMaxSidePx, kMaxPicturePx);
+    video.width_px = static_cast<int>(width_px);
+    video.height_px = static_cast<int>(height_px);
+    if (letter_pt || !look.overlay.text_px)
+        look.overlay.text_px = letter_pt.value_or(kPrintPt) / kPointsPerInch * pixels_per_inch;
     return look;
 }
 
@@ -243,7 +264,7 @@ py::dict facts(const PyFilm& film) {
     const System& system = shown.system();
     const System named = named_in_files(scene, system);
     const std::vector<std::string> keys = body_keys(named);
-    const std::vector<std::string> colors = curve_colors(scene, system.bodies.size());
+    const std::vector<std::string> colors = curve_colors(scene, system);
     const auto tracked = film::tracked_particles(system);
     py::dict all = plan_facts(shown, error_estimate_text(shown));
     py::list bodies;
@@ -279,29 +300,48 @@ py::dict facts(const PyFilm& film) {
 }
 
 /// Writes the poses at some increasing times in one picture; the extension of `path` chooses the format.
-/// Without a width, the picture has the pixels and the look of the film.
+/// `look`: the scene of the film in another size.
+void write_poses(const Film& film, const Scene& look, double pixels_per_inch, const std::string& path,
+                 const std::vector<double>& times_s, bool force) {
+    PngInfo info;
+    info.text = {{"Title", printable(look.name)}, {"Time", fmt::format("{} s", fmt::join(times_s, ", "))}};
+    info.pixels_per_inch = pixels_per_inch;
+    write_figure(path, film.with_look(look), {.times_s = times_s}, info, {.force = force});
+}
+
 void save_still(const PyFilm& film, const std::string& path, const std::vector<double>& times_s,
-                std::optional<double> width_mm, double letter_pt, bool force) {
+                std::optional<double> width_mm, std::optional<double> pixels_per_inch,
+                std::optional<double> letter_pt, bool force) {
     film.with_film([&](const Film& shown) {
-        const Scene& scene = shown.scene();
-        PngInfo info;
-        info.text = {{"Title", printable(scene.name)},
-                     {"Time", fmt::format("{} s", fmt::join(times_s, ", "))}};
-        const OutputOptions options{.force = force};
-        if (!width_mm) {
-            info.pixels_per_inch = kScreenPpi;
-            return write_figure(path, shown, {.times_s = times_s}, info, options).size();
+        double ppi = pixels_per_inch.value_or(width_mm ? kReportPpi : kScreenPpi);
+        Scene look = shown.scene();
+        if (width_mm) {
+            look = look_in_print(look, *width_mm, ppi, letter_pt);
+            ppi = look.video.width_px * kMmPerInch / *width_mm;
+        } else if (letter_pt) {
+            look.overlay.text_px = *letter_pt / kPointsPerInch * ppi;
         }
-        const Film look = shown.with_look(look_in_print(scene, *width_mm, letter_pt));
-        info.pixels_per_inch = look.scene().video.width_px * kMmPerInch / *width_mm;
-        return write_figure(path, look, {.times_s = times_s}, info, options).size();
+        write_poses(shown, look, ppi, path, times_s, force);
+        return 0;
+    });
+}
+
+void save_report_still(const PyFilm& film, const std::string& path, const std::vector<double>& times_s,
+                       double width_mm, double letter_pt, bool force) {
+    film.with_film([&](const Film& shown) {
+        const Scene look = look_in_report(shown.scene(), width_mm, letter_pt);
+        write_poses(shown, look, look.video.width_px * kMmPerInch / width_mm, path, times_s, force);
+        return 0;
     });
 }
 
 }  // namespace
 
 void add_figures(py::module_& module, py::class_<PyFilm>& film) {
-    film.def("facts", &facts).def("rows", &rows).def("save_still", &save_still);
+    film.def("facts", &facts)
+        .def("rows", &rows)
+        .def("save_still", &save_still)
+        .def("save_report_still", &save_report_still);
     module.attr("page_style") = kPageStyle;
     // With the same bits on every machine, unlike numpy.arctan2.
     module.def("angle", py::vectorize([](double y, double x) { return angle_rad(y, x); }));

@@ -43,6 +43,17 @@ TEST(FilmLook, HasThePlanOfItsFilm) {
     EXPECT_NEAR(*shown.error_estimate_px(), 2.0 * *film.error_estimate_px(), 0.1 * *film.error_estimate_px());
 }
 
+TEST(FilmLook, HasThePlotsOfItsFilm) {
+    const Scene scene = parse_scene(std::string(kSceneOfLooks) + "[overlay]\nplots = [\"angle\"]\n", "a");
+    Film film(scene);
+    Scene look = scene;
+    look.video.width_px *= 2;
+    look.video.height_px *= 2;
+    EXPECT_TRUE(test::equal_images(film.with_look(look).still(0.75), Film(look).still(0.75)));
+    look.overlay.plots = {LivePlot::kEnergy};
+    EXPECT_EQ(test::code_of([&] { std::ignore = film.with_look(look); }), ExitCode::kInternal);
+}
+
 TEST(FilmLook, RefusesQuantitiesThatTheMotionLacks) {
     Film film(parse_scene(kSceneOfLooks, "a"));
     Scene look = film.scene();

@@ -342,24 +342,24 @@ class Film:
         Raises Error (code 2) for other values."""
         return self._film.still(_float(time, "time"), _float(shutter, "shutter"))
 
-    def save_still(self, path, times, *, width_mm=None, font_pt=9, force=False):
+    def save_still(self, path, times, *, width_mm=None, ppi=None, font_pt=None, force=False):
         """Draws the poses at one or more times in s, 0 .. duration, in one picture, earlier ones fainter, like `corda still`
         and `corda strobe`; the extension of `path`, .png, .svg or .pdf, chooses the format.
 
-        width_mm: its width in print, 1 .. 10000. Then it has letters of font_pt points, PNGs have 300 pixels per inch, what
-        the scene says in pixels keeps its share of the width, and the theme is paper unless the scene names one, has a dark
-        background, or colours that do not show on white. Without it, the picture has the pixels of a frame. force: replace an
-        existing file. Raises Error: code 2 for times, width or extension, 6 for a file that exists or cannot be written, 4
-        without OpenGL for .png.
+        width_mm: its width in print, 1 .. 10000; without it, the picture has the pixels of a frame. ppi: pixels per inch, 1 ..
+        10000; 96, or 300 with width_mm, whose pixels it sets. font_pt: the size of letters in points, 1 .. 100; with width_mm,
+        8 unless the scene has overlay.text_px. force: replace an existing file. Raises Error: code 2 for times, sizes or
+        extension, 6 for a file that exists or cannot be written, 4 without OpenGL for .png.
         """
         times = [times] if isinstance(times, (_numbers.Real, _decimal.Decimal)) else times
         times = sorted({_float(time, "times") for time in times})
-        if width_mm is not None and not 1.0 <= _float(width_mm, "width_mm") <= 10000.0:
-            raise _error(f"width_mm: takes 1 .. 10000 mm, not {width_mm!r}")
-        if not 1.0 <= _float(font_pt, "font_pt") <= 100.0:
-            raise _error(f"font_pt: takes 1 .. 100 points, not {font_pt!r}")
-        width_mm = width_mm if width_mm is None else float(width_mm)
-        self._film.save_still(_path(path), times, width_mm, float(font_pt), bool(force))
+        sizes = []
+        for name, value, most, unit in (("width_mm", width_mm, 10000.0, "mm"), ("ppi", ppi, 10000.0, "pixels per inch"),
+                                        ("font_pt", font_pt, 100.0, "points")):
+            if value is not None and not 1.0 <= _float(value, name) <= most:
+                raise _error(f"{name}: takes 1 .. {most:.0f} {unit}, not {value!r}")
+            sizes.append(value if value is None else float(value))
+        self._film.save_still(_path(path), times, *sizes, bool(force))
 
     @property
     def positions(self):

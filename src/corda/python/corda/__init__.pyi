@@ -55,7 +55,8 @@ class Film:
         times: float | Iterable[float],
         *,
         width_mm: float | None = None,
-        font_pt: float = 9,
+        ppi: float | None = None,
+        font_pt: float | None = None,
         force: bool = False,
     ) -> None: ...
     @property

@@ -14,7 +14,7 @@ import time
 
 import numpy as np
 
-from . import Error, Film, __version__, _console, _corda, _error
+from . import Error, Film, __version__, _console, _corda, _error, _path
 from ._archive import csv_text, save_file
 from ._motion import motion_of
 
@@ -233,8 +233,7 @@ def _write_figure(figure, film, folder, options, svgs):
             if figure.plot:
                 folder.write(name, files[ending])
             else:
-                film.save_still(folder.path / name, figure.times, width_mm=width_mm, font_pt=options.font_pt,
-                                force=options.force)
+                film._film.save_report_still(_path(folder.path / name), figure.times, width_mm, options.font_pt, options.force)
                 folder.note(name)
             if ending == "svg" and width_mm == shown_mm:
                 svgs[figure.id] = (folder.path / name).read_bytes()
