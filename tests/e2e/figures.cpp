@@ -150,6 +150,13 @@ TEST_F(Figures, LookTheSameAsPixelsAndAsVectors) {
     expect_same_pictures({"sheet", "--at", "0,0.1,0.2,0.3", "--columns", "3"}, 70);
 }
 
+TEST_F(Figures, LookTheSameWhereFadedLinesAreVerticalOrLevel) {
+    expect_same_pictures({"strobe", "--at", "0,0.2", "--set", "overlay={time=false,scale_bar=false}", "--set",
+                          "rope=[{hang={lengths=[1.0],angles_deg=[0.0],rates_deg_s=[180.0]}},"
+                          "{line={particles=2,from=[0.5,0.5],step=[1,0]},pinned=[0,1]}]"},
+                         14);
+}
+
 TEST_F(Figures, LookTheSameOnTransparentGrounds) {
     // A halo in a PDF removes everything below it, even the halo of a translucent rope.
     const std::vector<std::string> clear{"--set", "style.background=transparent", "--set",

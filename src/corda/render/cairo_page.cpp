@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
 #include "corda/core/markup.hpp"
@@ -96,6 +98,17 @@ std::string with_ids(std::string_view svg, const std::string& prefix) {
     return made;
 }
 
+/// An SVG whose masks apply to the whole page. By default, a mask hides what lies outside of the box of the
+/// lines without their width: all of a line that is vertical or level.
+std::string with_whole_masks(std::string svg, double width, double height) {
+    constexpr std::string_view kMask = "<mask ";
+    const std::string region =
+        fmt::format(R"(maskUnits="userSpaceOnUse" x="0" y="0" width="{}" height="{}" )", width, height);
+    for (std::size_t at = svg.find(kMask); at != std::string::npos; at = svg.find(kMask, at + kMask.size()))
+        svg.insert(at + kMask.size(), region);
+    return svg;
+}
+
 /// An SVG of cairo with a title, and with identifiers that no other figure has: several may stand in one page
 /// of HTML.
 std::string finished_svg(const std::string& svg, const std::string& title) {
@@ -134,16 +147,18 @@ std::vector<std::vector<view::Capsule>> halos_apart(const view::DrawList& list, 
 
 class CairoPage : public VectorPage {
   public:
-    CairoPage(const PageDef& def, bool is_svg) : is_svg_(is_svg), title_(printable(def.title)) {
-        const double width = is_svg ? def.width_mm : def.width_mm * kPointsPerMm;
-        const double scale = width / def.width_px;
-        const double height = scale * def.height_px;
+    CairoPage(const PageDef& def, bool is_svg)
+        : is_svg_(is_svg),
+          title_(printable(def.title)),
+          width_(is_svg ? def.width_mm : def.width_mm * kPointsPerMm),
+          height_(width_ / def.width_px * def.height_px) {
+        const double scale = width_ / def.width_px;
         if (is_svg) {
-            surface_.reset(cairo_svg_surface_create_for_stream(append_bytes, &bytes_, width, height));
+            surface_.reset(cairo_svg_surface_create_for_stream(append_bytes, &bytes_, width_, height_));
             cairo_svg_surface_set_document_unit(surface_.get(), CAIRO_SVG_UNIT_MM);
             cairo_svg_surface_restrict_to_version(surface_.get(), CAIRO_SVG_VERSION_1_1);
         } else {
-            surface_.reset(cairo_pdf_surface_create_for_stream(append_bytes, &bytes_, width, height));
+            surface_.reset(cairo_pdf_surface_create_for_stream(append_bytes, &bytes_, width_, height_));
             cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_TITLE, title_.c_str());
             cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_CREATOR, "corda");
             // The default is the current time, which would make every file different.
@@ -194,7 +209,8 @@ class CairoPage : public VectorPage {
         check(cairo_status(cairo_.get()));
         cairo_surface_finish(surface_.get());
         check(cairo_surface_status(surface_.get()));
-        return is_svg_ ? finished_svg(bytes_, title_) : std::move(bytes_);
+        if (!is_svg_) return std::move(bytes_);
+        return finished_svg(with_whole_masks(std::move(bytes_), width_, height_), title_);
     }
 
   private:
@@ -286,6 +302,8 @@ class CairoPage : public VectorPage {
 
     bool is_svg_;
     std::string title_;
+    double width_;  ///< in millimetres in SVG, in points in PDF
+    double height_;
     std::map<std::string, view::Font> fonts_;  ///< by the paths of their files
     std::map<std::string, FontFace> faces_;
     // The surface writes to bytes_ until it is destroyed.
