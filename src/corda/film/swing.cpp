@@ -36,9 +36,10 @@ void Passages::include(double time_s, Vec2 arm_m, Vec2 velocity_m_s) {
     constexpr double kNarrow = 1e-9;
     const auto was = std::exchange(last_, Point{time_s, arm_m, velocity_m_s});
     const double width = arm_m.y != 0.0 ? std::abs(arm_m.x / arm_m.y) : 0.0;
-    widest_ = std::max(widest_, width);
+    const double widest = std::exchange(widest_, std::max(widest_, width));
     if (!was || (was->arm_m.x < 0.0) == (arm_m.x < 0.0) || was->arm_m.y >= 0.0 || arm_m.y >= 0.0) return;
-    if (std::exchange(widest_, width) < kNarrow) return;  // this state belongs to the next swing too
+    widest_ = width;  // of the next swing
+    if (widest < kNarrow) return;
     const double step_s = time_s - was->time_s;
     times_s_.push_back(was->time_s + step_s * root_of_cubic(was->arm_m.x, step_s * was->velocity_m_s.x,
                                                             arm_m.x, step_s * velocity_m_s.x));

@@ -101,6 +101,15 @@ TEST(Passages, AreFoundAtStatesThatAreBelowThePin) {
     }
 }
 
+TEST(Passages, DoNotCountAStartBelowThePin) {
+    for (const double side : {-1.0, 1.0}) {
+        const auto swing = [side](double t) { return side * 0.1 * std::sin(std::numbers::pi * t); };
+        const std::vector<double> times_s = passages_of(swing, 2.5).times_s();
+        ASSERT_EQ(times_s.size(), 2U) << side;
+        EXPECT_NEAR(times_s[0], 1.0, 1e-6);
+    }
+}
+
 TEST(Passages, DoNotCountTheRoundingOfWhatHangsAtRest) {
     EXPECT_TRUE(passages_of([](double t) { return 1e-14 * std::cos(9.0 * t); }, 10.0).times_s().empty());
     EXPECT_EQ(
