@@ -235,6 +235,29 @@ def test_captions_name_what_is_shown():
     assert _chapters.quantity_text(1234567.0, "N") == "1.23 MN" and _chapters.quantity_text(3.13, "m/s") == "3.13 m/s"
 
 
+def test_each_rope_has_its_period_and_theory_and_energy_its_reason(tmp_path):
+    scene = write(tmp_path, """schema = 1
+world.duration = 5.0
+video = { size = [320, 180], fps = 30 }
+overlay.language = "de"
+[[rope]]
+hang = { links = 1, length = 1.0, angle_deg = 20.0 }
+moves = [{ pin = 0, waves = [{ amplitude = [0.1, 0.0], frequency = 0.7 }] }]
+[[rope]]
+label = "second"
+hang = { links = 1, length = 1.0, angle_deg = 20.0, from = [1.5, 0.0] }
+""")
+    assert run(scene, "-o", tmp_path / "rep", "-q").returncode == 0
+    page = (tmp_path / "rep" / "report.html").read_text()
+    assert "No period of rope 0 is stated: successive periods differ by" in page
+    assert ("The period of second is 2,0215 s, by 5 passages below the pin; that of a point pendulum of this amplitude is "
+            "2,0215 s.") in page
+    assert "There is no energy error to tell: supports that move do work." in page
+    # A name that is longer than the axis makes the page higher.
+    names = subprocess.run(["pdftotext", tmp_path / "rep" / "phase_85mm.pdf", "-"], capture_output=True, text=True, check=True)
+    assert "Winkelgeschwindigkeit (rad/s)" in names.stdout
+
+
 def test_the_theme_is_paper_unless_the_scene_chooses(tmp_path):
     rope = "[[rope]]\nhang = { links = 1, length = 1.0, angle_deg = 30.0 }\n"
 

@@ -288,6 +288,9 @@ py::dict facts(const PyFilm& film) {
                        ? py::object(py::make_tuple(relaxation->force_n->x, relaxation->force_n->y))
                        : py::none();
     all["drag"] = scene.world.drag_1_s;
+    all["has_wind"] = scene.world.wind_m_s != Vec2{} || scene.world.gusts != WaveDef{};
+    all["has_moves"] = !system.moves.empty();
+    all["has_events"] = system.has_events();
     all["duration"] = scene.world.duration_s;
     all["rate"] = scene.video.scene_rate().rational().text();
     all["name"] = text_of(printable(scene.name).c_str());

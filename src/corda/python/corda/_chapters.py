@@ -207,26 +207,22 @@ def path_chapter(motion, film):
     return chapter
 
 
-def _period_text(motion):
-    """ "The film has 9 periods of 2.1529 s each; that of a point pendulum of this amplitude is 2.1529 s." """
-    periods = motion.swing.periods
-    whose = " of the first body" if len(motion.tracks) > 1 else ""
-    if len(periods) == 0:
-        return f"No period{whose} is stated: {motion.swing.reason}."
-    text = f"The period{whose} is {periods.mean():.5g} s"
-    least, most = f"{periods.min():.5g}", f"{periods.max():.5g}"
-    if len(periods) > 1:
-        text = (f"The film has {len(periods)} periods{whose} of {most} s each" if least == most else
-                f"{text}, the mean of {len(periods)} between {least} and {most} s")
-    theory = period_of(motion, motion.swing.amplitude_deg)
+def _period_text(motion, track):
+    """ "The period is 2.1529 s, by 11 passages below the pin; that of a point pendulum of this amplitude is 2.1529 s." """
+    swing = track.swing
+    whose = f" of {track.body.name}" if len(motion.tracks) > 1 else ""
+    if swing.period is None:
+        return f"No period{whose} is stated: {swing.reason}."
+    text = f"The period{whose} is {swing.period:.5g} s, by {len(swing.passes)} passages below the pin"
+    theory = period_of(motion, swing.amplitude_deg, track.body)
     if theory is None:
-        return f"{text}; no theory in this report has a period for such a scene."
+        return f"{text}; this report has no theory for it."
     return f"{text}; that of {theory.model} is {theory.seconds:.5g} s."
 
 
 def angle_chapter(motion, film):
-    """The angles about the pins over time, and the period of the first, compared with theory; without a figure if one body has
-    no pin or comes close to it."""
+    """The angles about the pins over time, and the periods, compared with theory; without a figure if one body has no pin or
+    comes close to it."""
     chapter = Chapter("Angle")
     others = sum(not track.turns for track in motion.tracks)
     if others == len(motion.tracks):
@@ -235,8 +231,9 @@ def angle_chapter(motion, film):
         chapter.summary = (f"There is no figure of the angle: the free ends of {others} of the {len(motion.tracks)} bodies do "
                            "not turn about one pin, or come near to it.")
         return chapter
-    chapter.summary = _period_text(motion)
-    has_theory = len(motion.swing.periods) and period_of(motion, motion.swing.amplitude_deg)
+    chapter.summary = " ".join(_period_text(motion, track) for track in motion.tracks)
+    swing = motion.tracks[0].swing
+    has_theory = len(motion.bodies) == 1 and swing.period is not None and period_of(motion, swing.amplitude_deg)
     circles = (f" Circles: passes below the pin by the period of {has_theory.model.rstrip(',')}, counted from the first."
                if has_theory else "")
     chapter.figures.append(Figure(
@@ -261,9 +258,19 @@ def phase_chapter(motion, film):
     return chapter
 
 
+def _why_energy_changes(motion):
+    if motion.drag > 0.0:
+        return "drag takes energy, and wind gives some" if motion.has_wind else "drag takes energy"
+    if motion.has_moves:
+        return "supports that move do work"
+    if motion.has_events:
+        return "what is cut or let go takes energy along"
+    return "the method takes energy"
+
+
 def energy_chapter(motion, film):
     """Energies over time, and the energy error."""
-    summary = ("Damping takes energy on purpose, so there is no energy error to tell." if motion.energy_error is None else
+    summary = (f"There is no energy error to tell: {_why_energy_changes(motion)}." if motion.energy_error is None else
                "The energy error, | E - E(0) | over the sum of weight times length of all bodies, or over E(0) without a "
                f"force, is at most {quantity_text(motion.energy_error, '')}.")
     elastic = ", elastic" if motion.is_elastic else ""
@@ -296,7 +303,7 @@ def tension_chapter(motion, film):
                        f"({link_text(motion, largest)}).")
     known = [track for track in motion.tracks if track.body not in unknown]
     of_each = " of each body" if len(known) > 1 else ""
-    is_plain = plot._hangs_plainly(motion)
+    is_plain = plot._hangs_alone(motion)
     if known:
         rest = " Dashed: the largest at rest, the weight of the rope." if is_plain else ""
         chapter.figures.append(Figure(

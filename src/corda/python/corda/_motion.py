@@ -73,6 +73,11 @@ class Track:
         return np.hypot(*self.arm.T).min() >= _NEAR_PIN * self.body.rest_m.sum()
 
     @functools.cached_property
+    def swing(self):
+        """The Swing; the body has a pin."""
+        return Swing(self)
+
+    @functools.cached_property
     def angle(self):
         """Angle of the way from the pin in rad from straight down, positive towards +x, and its rate in rad/s: two arrays.
         Turns are counted on by the rate, since a fast rope may turn by more than half a turn between frames. Between two frames
@@ -176,14 +181,11 @@ def _cubic(v0, d0, v1, d1):
 
 
 class Swing:
-    """Periods and amplitude of a Track with a pin, from its frames."""
+    """Period and amplitude of a Track with a pin, from its frames."""
 
     def __init__(self, track):
-        passes, period_s, self.reason = _corda.swing(track.times, track.arm, track.arm_velocity)
-        #: Times of the passes below the pin, in s.
-        self.passes = np.array(passes)
-        #: Times between passes in the same direction, in s; empty, for a `reason`, if they do not agree.
-        self.periods = np.zeros(0) if period_s is None else self.passes[2:] - self.passes[:-2]
+        #: Times of the passes below the pin, in s, and the period, in s; None for a `reason`, if passes do not agree.
+        self.passes, self.period, self.reason = _corda.swing(track.times, track.arm, track.arm_velocity)
         #: The largest angle to a side, in degrees.
         self.amplitude_deg = np.degrees(self._largest_angle(track, np.diff(track.times)))
 
@@ -209,11 +211,6 @@ class Motion:
         self.masses = self.mass_kg
         self.bodies = _bodies(facts["bodies"])
         self.tracks = [Track(self, body) for body in self.bodies if body.tracked is not None]
-
-    @functools.cached_property
-    def swing(self):
-        """The Swing of the first track; None if it has no pin."""
-        return Swing(self.tracks[0]) if self.tracks and self.tracks[0].arm is not None else None
 
     @functools.cached_property
     def moving_count(self):

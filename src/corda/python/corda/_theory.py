@@ -53,34 +53,41 @@ def rope_omega(links, spacing_m, gravity):
     return math.sqrt(gravity / spacing_m * x)
 
 
-def _gravity(motion):
-    """The acceleration downwards in m/s2 that the first body feels; 0 if there is none that theory knows."""
+def _gravity(motion, body):
+    """The acceleration downwards in m/s2 that a body feels; 0 if there is none that theory knows."""
     gravity = motion.gravity
     if motion.force is not None:
-        gravity = np.asarray(motion.force) / motion.masses[0]
+        gravity = np.asarray(motion.force) / motion.masses[body.particles][0]
     return -gravity[1] if gravity[0] == 0.0 else 0.0
 
 
-def hangs_plainly(motion):
-    """Whether the scene is one rope that hangs from its first particle, and only weight acts on it."""
-    body = motion.bodies[0]
-    return (len(motion.bodies) == 1 and body.is_chain and not body.is_net and body.compliance == 0.0 and not motion.bends
-            and motion.drag == 0.0 and np.flatnonzero(motion.pinned).tolist() == [0] and _gravity(motion) > 0.0)
+def hangs_plainly(motion, body):
+    """Whether a body is a rope that hangs from its first particle, which is at rest, and only weight acts on it."""
+    first = body.particles.start
+    return (body.is_chain and not body.is_net and body.compliance == 0.0 and not motion.bends and motion.drag == 0.0
+            and not motion.has_events and np.flatnonzero(motion.pinned[body.particles]).tolist() == [0]
+            and not np.ptp(motion.positions[:, first], axis=0).any() and _gravity(motion, body) > 0.0)
+
+
+def hangs_alone(motion):
+    """Whether the scene is one such rope."""
+    return len(motion.bodies) == 1 and hangs_plainly(motion, motion.bodies[0])
 
 
 def weights_below(motion):
-    """The tensions in N of the links of a rope that hangs at rest (see hangs_plainly): the weight of all below each."""
-    return _gravity(motion) * np.cumsum(motion.masses[:0:-1])[::-1]
+    """The tensions in N of the links of a rope that hangs at rest (see hangs_alone): the weight of all below each."""
+    return _gravity(motion, motion.bodies[0]) * np.cumsum(motion.masses[:0:-1])[::-1]
 
 
-def period_of(motion, angle_deg):
-    """The Period of a motion that swings through `angle_deg`: of a point pendulum, also of a rope whose end has all but a
+def period_of(motion, angle_deg, body=None):
+    """The Period of a body, by default the first, that swings through `angle_deg`: of a point pendulum, also of a rope whose end has all but a
     hundredth of its mass, whose period is shorter by less than 0.1 %; of a rigid rod, which bars to more than the next
     particle make of a rope; or of a hanging rope at small angles. The links are equal. None for other scenes."""
-    if not hangs_plainly(motion) or not angle_deg < 180.0:
+    body = motion.bodies[0] if body is None else body
+    if not hangs_plainly(motion, body) or not angle_deg < 180.0:
         return None
-    body, gravity, links = motion.bodies[0], _gravity(motion), len(motion.bodies[0].rest_m)
-    start = motion.positions[0]
+    gravity, links = _gravity(motion, body), len(body.rest_m)
+    start, masses = motion.positions[0, body.particles], motion.masses[body.particles]
     link_m = np.hypot(*np.diff(start, axis=0).T)
     is_at_rest_length = np.allclose(link_m, body.rest_m, rtol=1e-9, atol=0.0)
     if not is_at_rest_length or not np.allclose(link_m, link_m[0], rtol=1e-9, atol=0.0):
@@ -89,12 +96,12 @@ def period_of(motion, angle_deg):
     length_m = links * spacing_m
     if links == 1:
         return Period(pendulum_period(math.sqrt(gravity / length_m), angle_deg), "a point pendulum of this amplitude")
-    own_kg = motion.masses.sum() - body.payload_kg
+    own_kg = masses.sum() - body.payload_kg
     is_straight = abs(np.hypot(*(start[-1] - start[0])) - length_m) <= 1e-9 * length_m
     if is_straight and own_kg <= 0.01 * body.payload_kg:
         return Period(pendulum_period(math.sqrt(gravity / length_m), angle_deg),
                       "a point pendulum of this amplitude, with all mass at the end of the rope,")
-    if body.payload_kg != 0.0 or np.any(motion.masses != motion.masses[0]):
+    if body.payload_kg != 0.0 or np.any(masses != masses[0]):
         return None
     if body.reach > 1:
         return Period(pendulum_period(rod_omega(links, spacing_m, gravity), angle_deg),

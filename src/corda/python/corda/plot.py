@@ -21,7 +21,7 @@ import numpy as _np
 
 from . import _corda, _error
 from ._motion import motion_of as _motion_of
-from ._theory import hangs_plainly as _hangs_plainly, period_of as _period_of, weights_below as _weights_below
+from ._theory import hangs_alone as _hangs_alone, period_of as _period_of, weights_below as _weights_below
 
 try:
     from matplotlib.ticker import ScalarFormatter as _ScalarFormatter
@@ -189,8 +189,8 @@ def angle(film, ax=None):
                           _np.degrees(track.curve(*track.angle))], axis=1)
 
     plot, _, _ = _draw(film, ax, _curves(motion, tracks, over_time), ("t", "s"), ("angle", "°"))
-    swing = motion.swing
-    theory = _period_of(motion, swing.amplitude_deg) if swing is not None and len(swing.periods) else None
+    swing = tracks[0].swing
+    theory = _period_of(motion, swing.amplitude_deg) if len(motion.bodies) == 1 and swing.period is not None else None
     if theory:
         passes = _np.arange(swing.passes[0], motion.times[-1], 0.5 * theory.seconds)
         whole_turns = 360.0 * round(tracks[0].angle[0][0] / (2.0 * _math.pi))
@@ -257,7 +257,7 @@ def tension(film, ax=None):
     curves = _curves(motion, tracks, lambda track: _np.stack(
         [motion.times, motion.largest(motion.tensions, track.body)[0]], axis=1))
     plot, _, unit = _draw(film, ax, curves, ("t", "s"), ("largest tension", "N"))
-    if _hangs_plainly(motion):
+    if _hangs_alone(motion):
         plot.theory(plot.word("at rest"), _weights_below(motion)[0] / unit)
     return plot.finish()
 
@@ -274,7 +274,7 @@ def tension_along(film, ax=None):
     frame = int(_np.flatnonzero(motion.times == largest.time)[0])
     curve = _np.stack([middles, motion.tensions[frame, body.links]], axis=1)
     plot, x_unit, unit = _draw(film, ax, [(curve, "", _COLORS[0])], ("distance along the rope", "m"), ("tension", "N"))
-    if _hangs_plainly(motion):
+    if _hangs_alone(motion):
         plot.theory(plot.word("at rest"), middles / x_unit, _weights_below(motion) / unit)
     return plot.finish()
 

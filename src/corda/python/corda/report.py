@@ -210,7 +210,13 @@ def _plot_files(figure, width_mm, font_pt):
         legend = axes.get_legend()
         rows = math.ceil(len(legend.get_texts()) / legend._ncols) if legend else 0
         page.set_figheight(figure.height_per_width * (width - 5.0 * letter) + (4.0 + 1.6 * rows) * letter)
-        page.draw_without_rendering()
+        for _ in range(3):  # a long name of the vertical axis needs a higher page
+            page.draw_without_rendering()
+            name = axes.yaxis.label.get_window_extent()
+            beyond = max(-name.y0, name.y1 - page.bbox.y1) / page.dpi
+            if beyond <= 0.0:
+                break
+            page.set_figheight(page.get_figheight() + 2.0 * beyond + 0.5 * letter)
         page.set_layout_engine("none")  # the layout is the same in all formats
         made = {"Creator": f"corda {__version__}", "Title": figure.title}
         files = {}
