@@ -19,6 +19,7 @@
 #include "corda/core/output_file.hpp"
 #include "corda/core/problem_json.hpp"
 #include "corda/core/removed.hpp"
+#include "corda/scene/schema.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -57,11 +58,35 @@ void take_last_values(CLI::App& app) {
 
 /// Why the first word is no command; std::nullopt if it is one, or an option.
 std::optional<std::string> unknown_command(const CLI::App& app, int argc, char** argv) {
-    if (argc < 2 || argv[1][0] == '-') return std::nullopt;
+    if (argc < 2) return std::nullopt;
+    if (argv[1][0] == '-') {
+        for (int i = 2; i < argc; ++i)
+            if (find_command(app, argv[i]) != nullptr)
+                return fmt::format("options stand behind the command; begin with corda {}", argv[i]);
+        return std::nullopt;
+    }
     if (find_command(app, argv[1]) != nullptr) return std::nullopt;
     if (const auto replacement = replacement_of(argv[1]); !replacement.empty())
         return fmt::format("the command \"{}\" was removed; {}", argv[1], replacement);
     return fmt::format("there is no command \"{}\"; {}", argv[1], advice(argv[1], command_names(app)));
+}
+
+/// What to do instead of an option that has the name of a key, such as "--hold"; std::nullopt for others.
+std::optional<std::string> setting_for(std::string_view option) {
+    std::string name(option.substr(2));
+    std::ranges::replace(name, '-', '_');
+    std::optional<std::string> of_ropes;
+    for (const scene::Key& key : scene::all_keys()) {
+        if (key.name != name || key.type.kind == scene::Kind::kTable || key.type.kind == scene::Kind::kTables)
+            continue;
+        const std::string path = scene::path_of(key);
+        const std::size_t list = path.find("[]");
+        if (list == std::string::npos) return fmt::format("it is a key of the scene: --set {}=...", path);
+        if (!of_ropes)
+            of_ropes = fmt::format("it is a key of the scene: --set {}[0{}=...", path.substr(0, list),
+                                   path.substr(list + 1));
+    }
+    return of_ropes;
 }
 
 /// The first argument of a command that looks like an option and is none; std::nullopt if all are.
@@ -79,7 +104,31 @@ std::optional<std::string> unknown_option(const CLI::App& app, int argc, char** 
         if (!word.starts_with("--") || std::ranges::find(names, word) != names.end()) continue;
         if (const auto replacement = replacement_of(word); !replacement.empty())
             return fmt::format("the option {} was removed; {}", word, replacement);
-        return fmt::format("unknown option {}; {}", word, advice(word, names));
+        const bool takes_settings = std::ranges::find(names, "--set") != names.end();
+        const auto setting = takes_settings ? setting_for(word) : std::nullopt;
+        return fmt::format("unknown option {}; {}", word, setting ? *setting : advice(word, names));
+    }
+    return std::nullopt;
+}
+
+/// The first word that belongs to no option of a command, and what may be meant; std::nullopt if there is
+/// none.
+std::optional<std::string> unexpected_word(const CLI::App& app, int argc, char** argv) {
+    const CLI::App* const command = argc < 2 ? nullptr : find_command(app, argv[1]);
+    const std::vector<std::string> left = app.remaining(true);
+    for (int i = 2; i < argc && command != nullptr; ++i) {
+        const std::string word = argv[i];
+        if (word.starts_with('-') || std::ranges::find(left, word) == left.end()) continue;
+        const std::string before = argv[i - 1];
+        std::string remedy = "see --help";
+        const CLI::Option* const output = command->get_option_no_throw("--output");
+        if (word.starts_with('=') || before == "=" || before.ends_with('='))
+            remedy = "a setting has no spaces: --set world.duration=2";
+        else if (word.find_first_not_of("0123456789.:") == std::string::npos)
+            remedy = "lists have commas and no spaces: --at 0,0.5";
+        else if (output != nullptr && output->count() == 0)
+            remedy = fmt::format("the output is named by -o {}", word);
+        return fmt::format("\"{}\" was not expected; {}", word, remedy);
     }
     return std::nullopt;
 }
@@ -153,9 +202,9 @@ int run(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-        const auto word = unknown_option(app, argc, argv);
-        return fail(early, {ExitCode::kUsage,
-                            word ? *word : fmt::format("{}; see --help", std::string_view(error.what()))});
+        auto problem = unknown_option(app, argc, argv);
+        if (!problem) problem = unexpected_word(app, argc, argv);
+        return fail(early, {ExitCode::kUsage, problem.value_or(fmt::format("{}; see --help", error.what()))});
     } catch (const Error& error) {
         return fail(early, error);
     }
