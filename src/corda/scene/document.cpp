@@ -132,6 +132,41 @@ std::string_view meant_by(char32_t code) {
     return {};
 }
 
+/// Better words for a syntax error in the last line of a text: a quote or a brace that is missing.
+void explain_line(std::string_view text, const std::string& source_name) {
+    const std::size_t begin = text.find_last_of('\n', text.size() - 2) + 1;  // npos + 1 is 0
+    const std::string_view line = text.substr(begin, text.find_last_not_of("\r\n") + 1 - begin);
+    const std::size_t equals = line.find('=');
+    const std::size_t value =
+        line.find_first_not_of(" \t", equals == std::string_view::npos ? equals : equals + 1);
+    std::vector<std::size_t> open;  // braces
+    static_cast<void>(find_bare(text, [&](std::size_t i) {
+        if (text[i] == '{') open.push_back(i);
+        if (text[i] == '}' && !open.empty()) open.pop_back();
+        return false;
+    }));
+    if (value == std::string_view::npos) return;
+    const bool is_quoted = line[value] == '"';
+    if (is_quoted && std::ranges::count(line, '"') == 1)
+        fail_at(place_of(text, begin + value, source_name), "a text has no closing quote", "end it with \"");
+    if (!open.empty())
+        fail_at(place_of(text, open.back(), source_name), "a table in braces has no end in its own line",
+                "write it on one line, or as a table [...] with a line for each key");
+    std::string word(line.substr(value, line.find_first_of(",#]}", value) - value));
+    word.erase(word.find_last_not_of(" \t") + 1);
+    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    const std::size_t unit = word.find_first_not_of("0123456789+-.eE_");
+    std::string remedy;
+    if (lower(word) == "true" || lower(word) == "false")
+        remedy = "write true or false, in small letters";
+    else if (is_letter(word.front()))
+        remedy = "put text in quotes";
+    else if (unit != std::string::npos && unit > 0 && word.find_first_of("\"'[{") == std::string::npos)
+        remedy = "write a number without its unit, or text in quotes";
+    if (!remedy.empty())
+        fail_at(place_of(text, begin + value, source_name), excerpt(word) + " is no value", remedy);
+}
+
 /// Better words for a syntax error, of which the parser only knows the place, up to the end of its line.
 void explain_syntax(std::string_view text, std::size_t line, const std::string& source_name) {
     std::size_t end = 0;
@@ -164,7 +199,7 @@ void explain_syntax(std::string_view text, std::size_t line, const std::string& 
             begin == std::string_view::npos ? begin : text.find_last_not_of(" \t", begin);
         return equals != std::string_view::npos && text[equals] == '=';
     });
-    if (comma == std::string_view::npos) return;
+    if (comma == std::string_view::npos) return explain_line(text, source_name);
     const std::size_t first = text.find_last_not_of("0123456789+-", comma - 1) + 1;
     std::string number(text.substr(first, text.find_first_not_of("0123456789", comma + 1) - first));
     const std::string given = number;

@@ -46,6 +46,9 @@ nets = 1 | 3:1 nets | did you mean "net"?
 [camera]\nfoo = 1 | 4:1 camera.foo | valid keys: center, height, margin
 [world]\nfloor = -1 | 4:1 world.floor | unknown key "floor"; ropes pass through everything: there are no floors
 [world]\nfriction = 1 | 4:1 world.friction | unknown key "friction"; world.drag slows everything | friction = 1 => drag = 1
+[overlay]\ntexts = [{ text = "a", end = 2 }] | 4:24 overlay.texts[0].end | to is the time in s | end = => to =
+[golden]\nat = [0.0]\ntolerance = 3 | 5:1 golden.tolerance | max, mean and share are its limits | tolerance = => max =
+[style]\ncolors = ["red"] | 4:1 style.colors | palette is the list of the colours | colors => palette
 [video]\nwidth = 640 | 4:1 video.width | unknown key "width"; video.size is [width, height] in pixels | width = 640 => size = [640, 360]
 @rope
 drive = 1 | 4:1 rope[0].drive | unknown key "drive"; moves of a rope or net moves a pinned particle: moves = [{ pin = 0, waves = | drive = 1 => moves = [{ pin = 0, waves = [{ amplitude = [0.1, 0.0], frequency = 1.0 }] }]
@@ -401,6 +404,16 @@ TEST(SceneMessages, OfRemovedKeysNameWhatReplacesThem) {
 TEST(SceneMessages, OfSyntaxNameThePlace) {
     for (const auto& [toml, begin, part] : std::vector<std::array<std::string, 3>>{
              {"schema = \n", "swing.toml:1:10: ", "expected value"},
+             {"[overlay]\ntitle = \"A rope\n",
+              "swing.toml:2:9: ", "a text has no closing quote; end it with \""},
+             {"[overlay]\ntitle = A rope # or two\n",
+              "swing.toml:2:9: ", "A rope is no value; put text in quotes"},
+             {"[[rope]]\nstring = True\n",
+              "swing.toml:2:10: ", "True is no value; write true or false, in small letters"},
+             {"[overlay]\ntitle = 1 m\n",
+              "swing.toml:2:9: ", "1 m is no value; write a number without its unit"},
+             {"[[rope]]\nhang = { links = 3,\nlength = 1 }\n",
+              "swing.toml:2:8: ", "has no end in its own line; write it on one line"},
              {"schema = 1\nschema = 2\n", "swing.toml:2:", "cannot redefine"},
              {"a = [1,\n", "swing.toml:", "end-of-file"},
              {"schema = 1\nx = \"\xff\"\n",
