@@ -127,6 +127,21 @@ def test_files_of_numpy_give_the_same_pictures(tmp_path):
         assert np.array_equal(corda.read_png(tmp_path / "a.png"), expected)
 
 
+def test_files_have_float32_and_headers_of_savetxt(tmp_path):
+    (tmp_path / "scene.toml").write_text(OPEN)
+    single = POSITIONS.astype(np.float32)
+    expected = corda.Film(text=OPEN, positions=single, times=TIMES).still(0.123)
+    np.savez(tmp_path / "m.npz", times=TIMES.astype(np.float32), positions=single)
+    rows = np.column_stack([TIMES, single.reshape(len(TIMES), -1)])
+    np.savetxt(tmp_path / "comma.csv", rows, delimiter=",", header="t,x0,y0,x1,y1,x2,y2")
+    np.savetxt(tmp_path / "space.csv", rows, header="t x0 y0 x1 y1 x2 y2")
+    for name, most in (("m.npz", 1), ("comma.csv", 0), ("space.csv", 0)):  # times of float32 differ by 3e-8 s
+        subprocess.run([PROGRAM, "still", tmp_path / "scene.toml", "--positions", tmp_path / name, "--at", "0.123", "-o",
+                        tmp_path / "a.png", "--force"], check=True, capture_output=True)
+        difference = corda.read_png(tmp_path / "a.png").astype(int) - expected
+        assert np.abs(difference).max() <= most, name
+
+
 def raw_npz(header, body=POSITIONS.tobytes()):
     """An .npz whose array `positions` has this header."""
     text = header.encode().ljust(117) + b"\n"
@@ -149,10 +164,10 @@ def shaped(shape):
 
 @pytest.mark.parametrize("data, words", [
     (npz(times=TIMES), 'there is no array \\"positions\\"; save it by numpy.savez(FILE, times=times, positions=positions)'),
-    (npz(times=TIMES, positions=POSITIONS.astype("f4")), "positions: numbers of type '<f4', not '<f8'; save positions.astype('<f8')"),
-    (npz(times=TIMES.astype(">f8"), positions=POSITIONS), "times: numbers of type '>f8', not '<f8'"),
-    (npz(times=TIMES, positions=np.array([None, 1])), "positions: numbers of type '|O', not '<f8'"),
-    (npz(times=TIMES, positions=np.zeros(3, [("a", "f8")])), "positions: numbers of type [('a', '<f8')], not '<f8'"),
+    (npz(times=TIMES, positions=POSITIONS.astype("f2")), "positions: numbers of type '<f2', not '<f8' or '<f4'; save positions.astype('<f8')"),
+    (npz(times=TIMES.astype(">f8"), positions=POSITIONS), "times: numbers of type '>f8', not '<f8' or '<f4'"),
+    (npz(times=TIMES, positions=np.array([None, 1])), "positions: numbers of type '|O', not '<f8' or '<f4'"),
+    (npz(times=TIMES, positions=np.zeros(3, [("a", "f8")])), "positions: numbers of type [('a', '<f8')], not '<f8' or '<f4'"),
     (npz(times=TIMES, positions=np.asfortranarray(POSITIONS)), "Fortran order); save numpy.ascontiguousarray(positions)"),
     (npz(times=TIMES[:, None], positions=POSITIONS), "times: shape (31, 1); give the shape (n,)"),
     (npz(times=TIMES, positions=POSITIONS[:5]), "positions: shape (5, 3, 2); give the shape (31, particles, 2) for 31 times"),

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <new>
 
@@ -44,7 +45,19 @@ std::string_view npy_value(std::string_view header, std::string_view key) {
 }  // namespace
 
 void NpyArray::copy_to(void* numbers) const {
-    std::copy(bytes.begin() + static_cast<std::ptrdiff_t>(first), bytes.end(), static_cast<char*>(numbers));
+    const char* from = bytes.data() + first;
+    auto* to = static_cast<char*>(numbers);
+    if (number_bytes == sizeof(double)) {
+        std::copy(from, bytes.data() + bytes.size(), to);
+        return;
+    }
+    for (const char* const end = bytes.data() + bytes.size(); from < end; from += sizeof(float)) {
+        float single = 0.0F;
+        std::memcpy(&single, from, sizeof single);
+        const double number = single;
+        std::memcpy(to, &number, sizeof number);
+        to += sizeof number;
+    }
 }
 
 Npz::Npz(const FileHandle& file, const std::string& path, std::size_t most)
@@ -159,21 +172,24 @@ std::vector<std::size_t> Npz::shape_of(std::string_view header, const std::strin
 }
 
 NpyArray Npz::read(const std::string& name) const {
-    NpyArray array{{}, file_of(name), 0};
+    NpyArray array{{}, file_of(name), 0, sizeof(double)};
     if (array.bytes.size() < kNpyStart || !array.bytes.starts_with("\x93NUMPY\1"))
         fail_damaged(name + " is no array of format 1.0");
     array.first = kNpyStart + little_endian<2>(array.bytes, 8);
     if (array.first > array.bytes.size()) fail_damaged(name + " ends in its header");
     const std::string_view header = std::string_view(array.bytes).substr(kNpyStart, array.first - kNpyStart);
     const std::string_view type = npy_value(header, "descr");
-    if (!type.starts_with("'<f8'"))
-        fail(fmt::format("numbers of type {}, not '<f8'", printable(type.substr(0, type.find(", 'fortran")))),
+    if (type.starts_with("'<f4'"))
+        array.number_bytes = sizeof(float);
+    else if (!type.starts_with("'<f8'"))
+        fail(fmt::format("numbers of type {}, not '<f8' or '<f4'",
+                         printable(type.substr(0, type.find(", 'fortran")))),
              fmt::format("save {}.astype('<f8')", name), name);
     if (!npy_value(header, "fortran_order").starts_with("False"))
         fail("its first index is the fastest (Fortran order)",
              fmt::format("save numpy.ascontiguousarray({})", name), name);
     array.shape = shape_of(header, name);
-    double bytes = sizeof(double);  // a product of integers could overflow
+    auto bytes = static_cast<double>(array.number_bytes);  // a product of integers could overflow
     for (const std::size_t length : array.shape) bytes *= static_cast<double>(length);
     if (static_cast<double>(array.bytes.size() - array.first) != bytes)
         fail_damaged(name + " is not as long as its shape");

@@ -9,13 +9,14 @@
 
 namespace corda {
 
-/// An array of float64, the last index fastest.
+/// An array of float64 or float32, the last index fastest.
 struct NpyArray {
     std::vector<std::size_t> shape;
-    std::string bytes;      ///< of the file NAME.npy
-    std::size_t first = 0;  ///< the first of its numbers
+    std::string bytes;             ///< of the file NAME.npy
+    std::size_t first = 0;         ///< the first byte of its numbers
+    std::size_t number_bytes = 8;  ///< of one: 8 or 4
 
-    /// `numbers`: room for all.
+    /// `numbers`: room for all as double.
     void copy_to(void* numbers) const;
 };
 
@@ -27,7 +28,8 @@ class Npz {
     /// (kUsage) if it is damaged.
     Npz(const FileHandle& file, const std::string& path, std::size_t most);
 
-    /// Throws corda::Error (kUsage) if there is no such array of float64 in C order, or it is damaged.
+    /// Throws corda::Error (kUsage) if there is no such array of float64 or float32 in C order, or it is
+    /// damaged.
     [[nodiscard]] NpyArray read(const std::string& name) const;
 
   private:

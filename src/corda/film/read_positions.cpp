@@ -30,6 +30,11 @@ constexpr std::size_t kShown = 40;                               // bytes of a b
     throw Error(ExitCode::kUsage, Problem{std::move(place), std::move(what), std::move(remedy)});
 }
 
+[[noreturn]] void fail_of_size(const std::string& path) {
+    fail({path, 0, 0, {}}, fmt::format("the positions take more than {} MiB", kMaxPositionBytes >> 20U),
+         "give fewer times");
+}
+
 /// The lines of a file, from the bytes that were read before on.
 class Lines {
   public:
@@ -110,8 +115,11 @@ std::string name_of(std::size_t place) {
 Columns columns_of(std::string_view line, const std::string& path) {
     constexpr std::string_view kMark = "\xef\xbb\xbf";
     if (line.starts_with(kMark)) line.remove_prefix(kMark.size());
+    if (line.starts_with('#'))
+        line.remove_prefix(std::min(line.find_first_not_of("# "), line.size()));  // of savetxt
     Columns columns;
-    const std::size_t first = find_outside_quotes(line, ",;\t");
+    std::size_t first = find_outside_quotes(line, ",;\t");
+    if (first == line.size()) first = find_outside_quotes(line, " ");
     if (first < line.size()) columns.separator = line[first];
     const std::size_t all = static_cast<std::size_t>(std::ranges::count(line, columns.separator)) + 1;
     std::vector<bool> is_there(2 * all + 3);
@@ -199,10 +207,7 @@ GivenMotion read_csv(const FileHandle& file, const std::string& path, std::strin
                  "give times that increase, by 1e-9 s or more");
         times_s.push_back(row[0]);
         for (std::size_t i = 1; i < row.size(); i += 2) positions_m.push_back({row[i], row[i + 1]});
-        if (positions_m.size() * sizeof(Vec2) > kMaxPositionBytes)
-            fail({path, 0, 0, {}},
-                 fmt::format("the positions take more than {} MiB", kMaxPositionBytes >> 20U),
-                 "give fewer times");
+        if (positions_m.size() * sizeof(Vec2) > kMaxPositionBytes) fail_of_size(path);
     }
     return {std::move(times_s), std::move(positions_m), path};
 }
@@ -217,8 +222,10 @@ GivenMotion read_npz(const FileHandle& file, const std::string& path) {
     if (positions.shape.size() != 3 || positions.shape[0] != times.shape[0] || positions.shape[2] != 2)
         fail({path, 0, 0, "positions"}, fmt::format("shape ({})", fmt::join(positions.shape, ", ")),
              fmt::format("give the shape ({}, particles, 2) for {} times", times.shape[0], times.shape[0]));
+    const std::size_t count = positions.shape[0] * positions.shape[1];
+    if (count * sizeof(Vec2) > kMaxPositionBytes) fail_of_size(path);
     std::vector<double> times_s(times.shape[0]);
-    std::vector<Vec2> positions_m(positions.shape[0] * positions.shape[1]);
+    std::vector<Vec2> positions_m(count);
     times.copy_to(times_s.data());
     positions.copy_to(positions_m.data());
     return {std::move(times_s), std::move(positions_m), path};
