@@ -151,6 +151,17 @@ def test_a_wrong_shard_is_refused_at_once(tmp_path, shard, error, words):
         corda.Sweep(path).shard(*shard)
 
 
+def test_splits_have_the_samples_that_say_so(tmp_path):
+    path = write(tmp_path, ROPE, "samples = 40" + VARY + "[split]\ntrain = 0.75\ntest = 0.25\n")
+    sweep = corda.Sweep(path)
+    parts = {name: list(sweep.split(name)._numbers) for name in ("train", "test")}
+    assert sorted(parts["train"] + parts["test"]) == list(range(40)) and 4 < len(parts["test"]) < 18
+    assert sweep.split("test")[2]["split"] == "test" and sweep.split("test")[2]["sample"] == parts["test"][2]
+    assert list(sweep[10:].split("test").shard(0, 2)._numbers) == [number for number in parts["test"] if number >= 10]
+    with pytest.raises(corda.Error, match="split: 'validation' is no split of .*; it has train, test"):
+        sweep.split("validation")
+
+
 def test_a_wrong_file_is_refused_at_once(tmp_path):
     with pytest.raises(corda.Error, match="missing.toml") as missing:
         corda.Sweep(tmp_path / "missing.toml")

@@ -10,7 +10,7 @@ import os
 import time
 import warnings
 
-from . import _console, _corda, _error, _gl, _sample, _sweep_file
+from . import _console, _corda, _error, _gl, _parameters, _sample, _sweep_file
 
 __all__ = ["Sweep"]
 
@@ -88,10 +88,17 @@ class Sweep:
             raise _error(f"shard: takes index and count with 0 <= index < count, not {index} and {count}")
         return self._of(_shard_numbers(self._numbers, self._definition.shard_samples, index, count))
 
+    def split(self, name):
+        """The samples of a split of the file: a Sweep. Goes through all numbers once, without making a sample."""
+        splits = self._definition.splits
+        if name not in splits:
+            raise _error(f"split: {name!r} is no split of {self._definition.source}; " +
+                         (f"it has {', '.join(splits)}" if splits else "give it a table [split]"))
+        return self._of(tuple(number for number in self._numbers if _parameters.split_of(self._definition, number) == name))
+
     def parameters(self, index):
         """The parameters of a sample, without making it: a dictionary by the keys of the scene."""
-        from ._parameters import parameters_of
-        return parameters_of(self._definition, self._numbers[index])
+        return _parameters.parameters_of(self._definition, self._numbers[index])
 
     def _of(self, numbers):
         part = object.__new__(type(self))
