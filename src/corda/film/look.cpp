@@ -121,6 +121,9 @@ void raise_labels(const Motion& motion, std::span<const MotionBounds> bounds, Lo
     constexpr double kMaxGrowth = 1.3;  // of the camera's height for raised labels
     const bool is_fitted = !look.track && !look.scene.camera.height_m;
     const bool moves = look.track || !motion.system.moves.empty();
+    if (view::stack_labels(look.overlay.area, look.overlay.labels, motion.at(0.0), look.map_at(0.0)) &&
+        is_fitted)
+        look.camera = fitted_camera(look, bounds);
     for (const bool is_first : {true, false}) {
         if (is_first && !is_fitted) continue;
         view::LabelRoom room(look.overlay.area, look.view, look.overlay.labels);

@@ -131,6 +131,33 @@ std::vector<BodyLabel> shortened(const TextArea& area, std::vector<BodyLabel> la
     return labels;
 }
 
+bool stack_labels(const TextArea& area, std::span<BodyLabel> labels, const State& state,
+                  const Camera& camera) {
+    constexpr int kMaxRows = 3;  // more than its own
+    const auto box_of = [&](const BodyLabel& label) {
+        return label_box(area, label.text, place_of(label, state, camera), 0,
+                         distance_px(area, label, place_of(label, state, camera).clear_px), area.words);
+    };
+    const int gap_px = rounded(kGap * area.em_px);
+    std::vector<PixelRect> taken;
+    bool are_stacked = false;
+    for (BodyLabel& label : labels) {
+        const auto is_free = [&](PixelRect box) {
+            box.x0 -= gap_px;
+            box.x1 += gap_px;
+            return std::ranges::none_of(
+                taken, [&](const PixelRect& other) { return !box.intersected(other).empty(); });
+        };
+        const bool is_above = label.from == label.particle;
+        const int own = label.row;
+        while (is_above && label.row < own + kMaxRows && !is_free(box_of(label))) ++label.row;
+        if (is_above && !is_free(box_of(label))) label.row = own;
+        are_stacked = are_stacked || label.row > own;
+        taken.push_back(box_of(label));
+    }
+    return are_stacked;
+}
+
 std::vector<Drawn> drawn_labels(const TextArea& area, std::span<const BodyLabel> labels,
                                 std::span<const MotionBounds> bounds) {
     std::vector<Drawn> drawn;

@@ -46,6 +46,11 @@ struct LabelPlace {
 /// The labels, shortened to a share of the picture's width.
 [[nodiscard]] std::vector<BodyLabel> shortened(const TextArea& area, std::vector<BodyLabel> labels);
 
+/// Raises labels above particles by rows where they would overprint others in the picture of a state; true if
+/// there are any. Where no row of a few is free, a label stays.
+[[nodiscard]] bool stack_labels(const TextArea& area, std::span<BodyLabel> labels, const State& state,
+                                const Camera& camera);
+
 /// Extents of labels of particles that stay within `bounds`.
 [[nodiscard]] std::vector<Drawn> drawn_labels(const TextArea& area, std::span<const BodyLabel> labels,
                                               std::span<const MotionBounds> bounds);

@@ -2,6 +2,9 @@
 
 #include <string>
 #include <utility>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
 #include "corda/film/draw.hpp"
@@ -126,6 +129,29 @@ TEST(FilmLabels, OfAPinThatMovesKeepClearOfTrails) {
         }
     }
     EXPECT_GT(points, 300);
+}
+
+TEST(FilmLabels, OfNeighbouringPinsAreInRows) {
+    std::string ropes;
+    for (const char* const from : {"0.2", "0.4", "3.0"})
+        ropes += fmt::format(
+            "[[rope]]\nlabel = \"label of {}\"\nhang = {{ links = 1, length = 1.0, from = [{}, 0.0] }}\n",
+            from, from);
+    const Film film(labelled("hang = { links = 1, length = 1.0 }\n" + ropes));
+    std::vector<int> rows;
+    for (const view::BodyLabel& label : film.look().overlay.labels) rows.push_back(label.row);
+    EXPECT_EQ(rows, (std::vector<int>{0, 1, 2, 0}));
+    view::DrawList list;
+    film::draw(film.look(), film.motion(), 0.0, list);
+    std::vector<PixelRect> inks;
+    for (const view::Text& text : list.texts) {
+        if (!text.utf8.starts_with("label")) continue;
+        const PixelRect ink = view::Font().ink(text);
+        for (const PixelRect& other : inks) EXPECT_TRUE(ink.intersected(other).empty()) << text.utf8;
+        EXPECT_GE(ink.y0, 0);
+        inks.push_back(ink);
+    }
+    EXPECT_EQ(inks.size(), 4U);
 }
 
 TEST(FilmLabels, OfAPinKeepClearOfOtherRopes) {
