@@ -99,7 +99,9 @@ ExitCode plan(const Console& console, const PlanOptions& options) {
     const Film film = make_film(console, load(console, options.scene).scene, {}, "plan");
     const CameraDef& camera = film.camera();
     if (options.toml) {
-        const std::string toml = frozen_toml(film);
+        std::string toml = frozen_toml(film);
+        if (const auto estimate = error_estimate_text(film))
+            toml.insert(0, fmt::format("# error estimate by method auto: {}\n", *estimate));
         console.result(toml);
         console.report({{"schema", 1}, {"toml", toml}});
         return ExitCode::kOk;

@@ -95,6 +95,21 @@ Film make_film(const Console& console, const Scene& scene, FilmDef def, const st
 void warn_of_room(const Console& console, const Film& film) {
     for (const std::string& problem : film.left_out())
         console.warning(fmt::format("{}: {}", film.scene().source, problem));
+    constexpr double kFar = 20.0;  // extents of the start: of 1080 pixels, it takes 54
+    const System& system = film.system();
+    const auto extent_of = [](const std::vector<double>& values) {
+        const auto [low, high] = std::ranges::minmax(values);
+        return high - low;
+    };
+    const CameraDef& given = film.scene().camera;
+    const double extent_m = std::max(extent_of(system.x_m), extent_of(system.y_m));
+    const double height_m = *film.camera().height_m;
+    if (!given.height_m && given.path.empty() && extent_m > 0.0 && height_m > kFar * extent_m)
+        console.warning(
+            fmt::format("{}: the camera is {:.3g} m high to show the whole motion, {:.0f} times the extent "
+                        "of the start; give "
+                        "camera.center and camera.height to show a part of it",
+                        film.scene().source, height_m, height_m / extent_m));
 }
 
 void warn_of_branch(const Console& console, const Film& film) {
@@ -118,10 +133,15 @@ ExitCode report_empty(const Console& console, const EmptyPictures& empty, bool f
     const std::string which =
         all == 1 ? fmt::format("the picture at {:.6g} s is empty", first_s)
                  : fmt::format("{} of {} pictures are empty, the first at {:.6g} s", count, all, first_s);
-    console.warning(fmt::format(
-        "{}: nothing is in view of the camera; change {}, or leave them out, and all is in view", which,
-        camera.path.empty() ? "camera.center and camera.height"
-                            : "center and height of the keys of camera.path"));
+    if (!camera.center_m && !camera.height_m && camera.path.empty())
+        console.warning(fmt::format(
+            "{}: letters and plots leave the scene no room; give a larger picture, or fewer or smaller ones",
+            which));
+    else
+        console.warning(fmt::format(
+            "{}: nothing is in view of the camera; change {}, or leave them out, and all is in view", which,
+            camera.path.empty() ? "camera.center and camera.height"
+                                : "center and height of the keys of camera.path"));
     return fails ? ExitCode::kMismatch : ExitCode::kOk;
 }
 

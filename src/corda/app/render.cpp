@@ -123,7 +123,9 @@ void report_format(const Console& console, const Scene& scene, const CheckedOutp
     }
     if (!view::theme_colors(scene.style).ground.is_opaque() &&
         std::string_view(format.ending->muxer) == "gif")
-        console.warning("a GIF has no half transparent pixels: edges will be hard; .webm and .mov keep them");
+        console.warning(fmt::format(
+            "a GIF has no half transparent pixels: edges will be hard{}; .webm and .mov keep them",
+            scene.video.shutter > 0.0 ? ", and what motion blur makes fainter than half is left out" : ""));
 }
 
 void check_standard_output(const Console& console, const std::string& output) {

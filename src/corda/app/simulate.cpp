@@ -326,8 +326,10 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     set_interruption_message(kSomethingWritten);
     RopePassages passages(film.motion());
     write_output(console, film, options, console.json() ? &passages : nullptr);
+    const Figures& largest = film.diagnostics().largest;
     console.info(
-        fmt::format("{}; largest strain {:.3g}", cost_text(film), film.diagnostics().largest.strain));
+        fmt::format("{}; largest strain {:.3g}{}", cost_text(film), largest.strain,
+                    largest.energy_error ? fmt::format(", energy error {:.3g}", *largest.energy_error) : ""));
     warn_of_branch(console, film);
     if (to_file) console.result(options.output);
     console.report(report(film, passages));
@@ -337,8 +339,9 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
 }  // namespace
 
 void add_simulate(CLI::App& app, Action& action) {
-    auto [command, options] = add_command(
-        app, action, "simulate", "run the simulation alone; positions as CSV, figures as JSON", simulate);
+    auto [command, options] =
+        add_command(app, action, "simulate",
+                    "run the simulation alone; positions as CSV, figures and periods as JSON", simulate);
     add_scene(command, options.scene);
     command.add_option(
         "-o,--output", options.output,

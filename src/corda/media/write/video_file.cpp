@@ -177,8 +177,13 @@ void check_pictures(const CheckedVideo& video, const std::string& input) {
     const std::string folder = std::filesystem::path(video.path).parent_path().string();
     check_folder(folder);
     if (!folder.empty() && !is_there(folder)) return;
-    for (std::int64_t k = video.first; k < video.end; ++k)
-        check_output(picture_name(video.path, k), input, video.force || video.resume);
+    for (std::int64_t k = video.first; k < video.end; ++k) {
+        const std::string path = picture_name(video.path, k);
+        if (!video.force && !video.resume && is_there(path))
+            throw_error(ExitCode::kIo,
+                        "'{}' exists; --resume draws the pictures that are missing, --force all", path);
+        check_output(path, input, true);
+    }
 }
 
 /// Whether there is a whole picture under a name, as `expected` tells. Throws as frames_to_draw().

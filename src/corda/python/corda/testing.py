@@ -20,7 +20,7 @@ import subprocess as _subprocess
 import sys as _sys
 import tomllib as _tomllib
 
-from . import _corda, _limit, _path, _pixels
+from . import _corda, _error, _limit, _path, _pixels
 
 __all__ = ["assert_golden", "assert_matches_golden", "golden_scenes"]
 
@@ -71,7 +71,10 @@ def assert_golden(scene, references, *options):
     scenes with the option "--stale" finds pictures that no scene asks for."""
     __tracebackhide__ = True
     command = ["corda", "golden", str(scene), "--dir", str(references), *options]
-    ended = _subprocess.run(command, capture_output=True, text=True)
+    try:
+        ended = _subprocess.run(command, capture_output=True, text=True)
+    except FileNotFoundError:
+        raise _error("the program corda is in no folder of PATH; add its own (build/release of the source)", 6) from None
     if ended.returncode != 0:
         raise AssertionError(f"{ended.stdout}{ended.stderr}repeat: {_shlex.join(command)}\n"
                              f"accept: {_shlex.join([*command, '--update'])}, or --review to see them first")
