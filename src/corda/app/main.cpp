@@ -71,7 +71,7 @@ std::optional<std::string> unknown_command(const CLI::App& app, int argc, char**
     return fmt::format("there is no command \"{}\"; {}", argv[1], advice(argv[1], command_names(app)));
 }
 
-/// What to do instead of an option that has the name of a key, such as "--hold"; std::nullopt for others.
+/// Advice for an option that has the name of a key, such as "--hold"; std::nullopt for others.
 std::optional<std::string> setting_for(std::string_view option) {
     std::string name(option.substr(2));
     std::ranges::replace(name, '-', '_');

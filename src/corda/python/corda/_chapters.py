@@ -264,7 +264,7 @@ def _why_energy_changes(motion):
     if motion.has_moves:
         return "supports that move do work"
     if motion.has_events:
-        return "what is cut or let go takes energy along"
+        return "parts that are cut or let go take energy along"
     return "the method takes energy"
 
 
