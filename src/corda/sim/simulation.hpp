@@ -181,6 +181,8 @@ struct Trial {
     bool diverged = false;              ///< the run or a check diverged or branched after `reached_s`
     bool undecided = false;             ///< rounding decides on a snap of a string after `reached_s`
     bool unchecked = false;             ///< later comparisons would take too much work
+    bool too_long = false;              ///< the run was ended because it took too many steps or too much work
+    int passes = 0;                     ///< runs and checks that began to move
 };
 
 /// Reason for the method of a body.

@@ -312,13 +312,14 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
             kind.first_steps = kFirstImplicitSteps + kind.most_steps_1_s * def.timeline.step_s();
         }
         std::optional<std::size_t> next;
-        kind.is_last = [&](double ran_s, double run_updates) {
-            Failure failure{*i, ran_s, gain_by_growth_s(system, trial, ran_s, end_s), run_updates,
-                            left_updates - trial.updates};
+        kind.is_last = [&](const Trial& failed, double ran_s, double run_updates) {
+            trial = failed;
+            Failure failure{*i, ran_s, gain_by_growth_s(system, failed, ran_s, end_s), run_updates,
+                            left_updates - failed.updates};
             // Those with implicit steps say little of others.
             if (last && is_implicit(candidates[*last].trial.method) == is_implicit(trial.method)) {
                 // Frames are a grid, and may be sparse.
-                const double gained_s = std::max(0.0, trial.reached_s - candidates[*last].trial.reached_s) +
+                const double gained_s = std::max(0.0, failed.reached_s - candidates[*last].trial.reached_s) +
                                         def.timeline.step_s();
                 const int digits = candidates[*i].digits - candidates[*last].digits;
                 failure.gain_s = std::min(failure.gain_s, gained_s / digits);
@@ -328,7 +329,9 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
             return !next && !is_too_dear;
         };
         plan.method = trial.method;
-        const bool ended = run_trial(system, world, def, kind, trial, recording, plan.passes);
+        trial = run_trial(system, world, def, kind, trial, recording);
+        const bool ended = !trial.too_long;
+        plan.passes += trial.passes;
         plan.trials.push_back(trial);
         left_updates -= trial.updates;
         if (is_too_dear || (!ended && !is_implicit(trial.method))) {

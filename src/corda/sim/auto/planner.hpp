@@ -81,22 +81,23 @@ struct TrialKind {
     double first_steps = 0.0;  ///< that the run may take, and then per second of motion
     double most_steps_1_s = HUGE_VAL;
     double most_updates = HUGE_VAL;  ///< work of the run and its checks, after which the checks end
-    /// Asked once the trial has failed, at the time that its run has reached with this work. If true, the run
-    /// will be drawn: it continues to the end without its checks.
-    std::function<bool(double, double)> is_last = [](double, double) { return true; };
+    /// Asked once the trial, whose figures up to then it gets, has failed, at the time that its run has
+    /// reached with this work. If true, the run will be drawn: it continues to the end without its checks.
+    std::function<bool(const Trial&, double, double)> is_last = [](const Trial&, double, double) {
+        return true;
+    };
 };
 
 /// Number of checks of a trial: `is_first` as in TrialKind.
 [[nodiscard]] std::size_t check_count(const System& system, const MethodDef& method, bool is_first);
 
 /// Runs the trial's method and its checks side by side, the checks in turned coordinates, so that their
-/// rounding differs from the start on, and records in `trial` how far they agree. A run whose error is not
-/// far above rounding has three checks, and what these differ by counts twice. `recording` is cleared and
+/// rounding differs from the start on, and returns the trial with how far they agree. A run whose error is
+/// not far above rounding has three checks, and what these differ by counts twice. `recording` is cleared and
 /// receives the run's states. Once the difference is too large for good, or the work too large, the checks
-/// end. Each that begins to move adds one to `passes`. Returns false if the run was ended because it took too
-/// many steps or too much work. Throws corda::Refusal.
-bool run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial& trial,
-               Recording& recording, int& passes);
+/// end. Throws corda::Refusal.
+[[nodiscard]] Trial run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind,
+                              Trial trial, Recording& recording);
 
 /// The reason a method cannot run a system; std::nullopt if it can.
 [[nodiscard]] std::optional<Refusal> refusal(const System& system, const WorldDef& world,

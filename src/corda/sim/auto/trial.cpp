@@ -371,12 +371,12 @@ std::size_t check_count(const System& system, const MethodDef& method, bool is_f
     return has_one ? 1 : Checks::kMaxCount;
 }
 
-bool run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial& trial,
-               Recording& recording, int& passes) {
+Trial run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial trial,
+                Recording& recording) {
     const auto total = static_cast<std::int64_t>(def.timeline.size());
     std::int64_t i = 0;
     const CancelScope progress = report_frames(def, i);
-    CheckedRun run(system, world, def, trial, kind, passes);
+    CheckedRun run(system, world, def, trial, kind, trial.passes);
     bool is_last = false;
     const auto count_steps = [&] {
         const double most = kind.first_steps + kind.most_steps_1_s * run.time_s();
@@ -387,14 +387,14 @@ bool run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
     const auto conclude = [&] {
         is_known = true;
         run.conclude(recording.bounds(), trial);
-        if (!trial.to_the_end && !is_last) is_last = kind.is_last(run.time_s(), run.run_updates());
+        if (!trial.to_the_end && !is_last) is_last = kind.is_last(trial, run.time_s(), run.run_updates());
         if (is_last) run.draw();
     };
     recording.clear();
     for (; i < total; ++i) {
         check_cancelled();
         if (!run.agrees() && !is_known) conclude();
-        if (!run.agrees() && !is_last) return true;
+        if (!run.agrees() && !is_last) return trial;
         try {
             const CancelScope limit(count_steps);
             if (!run.record(static_cast<std::size_t>(i), recording)) break;
@@ -402,12 +402,13 @@ bool run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
         } catch (const TooMuchWork&) {
             trial.steps = run.steps();
             trial.updates = run.updates();
-            return false;
+            trial.too_long = true;
+            return trial;
         }
     }
     if (i == total) run.compare_until_end();
     conclude();
-    return true;
+    return trial;
 }
 
 std::optional<Refusal> refusal(const System& system, const WorldDef& world, const MethodDef& method,
