@@ -95,7 +95,12 @@ TEST(Init, TakesANewNameAndReplacesNothing) {
     EXPECT_EQ(test::read_file(folder.file("mine.toml")), test::read_file(kFolder + "start.toml"));
     EXPECT_THAT(init_in(folder, "mine.toml --force").err, testing::Not(HasSubstr("no example")));
     EXPECT_THAT(init_in(folder, "mine --force").err, HasSubstr("there is no example mine, and mine.toml is"));
-    EXPECT_THAT(init_in(folder, "hamock").err, HasSubstr("for the example hammock: corda init hammock"));
+    const auto misspelt = init_in(folder, "hamock");
+    EXPECT_EQ(misspelt.exit_code, 2);
+    EXPECT_THAT(misspelt.err,
+                HasSubstr("for the example hammock: corda init hammock; for a scene of this name: corda init "
+                          "hamock.toml"));
+    EXPECT_FALSE(std::filesystem::exists(folder.file("hamock.toml")));
     const std::string own = folder.write("whip.toml", "schema = 1\n");
     const auto refused = init_in(folder, "whip");
     EXPECT_EQ(refused.exit_code, 6);

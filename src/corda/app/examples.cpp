@@ -67,6 +67,13 @@ ExitCode write_scene(const Console& console, const InitOptions& options) {
     const std::string path = options.name + (is_toml ? "" : ".toml");
     const std::string name = std::filesystem::path(path).stem().string();
     const Example* const named = find_example(name);
+    // A name with a folder or an ending is that of a file; another one may be a misspelt example.
+    const bool is_file = options.name == "scene" || is_toml || options.name != name;
+    if (const auto meant = misspelt_example(name); named == nullptr && !is_file && meant)
+        throw_usage(
+            "there is no example {0}; for the example {1}: corda init {1}; for a scene of this name: corda "
+            "init {2}",
+            name, *meant, path);
     const Example& example = named != nullptr ? *named : *find_example(kStart);
     std::vector<std::pair<std::string, std::string_view>> files{{path, example.text}};
     const std::string scene = scene_in(example.text);
@@ -75,16 +82,10 @@ ExitCode write_scene(const Console& console, const InitOptions& options) {
                            find_example(std::filesystem::path(scene).stem().string())->text);
     for (const auto& [file_path, text] : files) check_output(file_path, {}, options.force);
     for (const auto& [file_path, text] : files) save_file(file_path, text, {.force = options.force});
-    // A name with a folder or an ending is that of a file; another one may be a misspelt example.
-    const bool is_file = options.name == "scene" || is_toml || options.name != name;
-    if (named == nullptr && !is_file) {
-        const std::string text =
-            fmt::format("there is no example {}, and {} is the scene to start from", name, path);
-        if (const auto meant = misspelt_example(name))
-            console.warning(fmt::format("{0}; for the example {1}: corda init {1}", text, *meant));
-        else
-            console.info(text + "; corda examples lists them");
-    }
+    if (named == nullptr && !is_file)
+        console.info(fmt::format(
+            "there is no example {}, and {} is the scene to start from; corda examples lists them", name,
+            path));
     const std::string stem = path.substr(0, path.size() - std::string_view(".toml").size());
     console.info(
         scene.empty()

@@ -25,6 +25,7 @@ ExitCode watch(const Console& console, const WatchOptions& options) {
     // The page shows them too, but a user who has misspelt the path looks at the terminal.
     def.on_problems = [&console](const std::vector<Problem>& problems) {
         for (const Problem& problem : problems) console.error(problem.text());
+        if (problems.empty()) console.info("the scene is shown again");
     };
     serve::Watch watch(std::move(def));
     const serve::Server server(options.server,

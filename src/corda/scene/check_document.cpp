@@ -78,10 +78,11 @@ constexpr Wish kWishes[] = {
      "hang.links and line.particles of a rope count its parts"},
     {" end until stop t_to to_s ", "to is the time in s at which the text goes", ".texts", "to"},
     {" time t start begin when from_s ", "from is the time in s at which the text appears", ".texts", "from"},
-    {" tolerance threshold ", "max, mean and share are its limits: max is the largest difference of a pixel, 0 .. 255",
-     "golden"},
+    {" tolerance threshold ",
+     "max, mean and share are its limits: max is the largest difference of a pixel, 0 .. 255", "golden"},
     {" color colour colors colours ",
-     "palette is the list of the colours of ropes and nets; color of a rope or net is its own", "style", "palette"},
+     "palette is the list of the colours of ropes and nets; color of a rope or net is its own", "style",
+     "palette"},
     {" bg background_color bg_color ", "style.background is the background"},
     {" end to ",
      "hang gives a length and an angle, line a step from particle to particle; points = [[0, 0], [1, -1]] "
@@ -373,10 +374,12 @@ class TableChecker {
         for (const Key& key : keys_of(method_key.section)) {
             const toml::node* const node = solver.get(key.name);
             if (node == nullptr || key.methods.empty() || has(key.methods, method)) continue;
+            const std::string named =
+                is_default ? fmt::format(", or give method = \"{}\"", key.methods.front()) : "";
             problems_->add(
                 *node, dotted(path, key.name),
                 fmt::format("method \"{}\" does not use it, only {}", method, fmt::join(key.methods, ", ")),
-                fmt::format("remove it{}", key.instead));
+                fmt::format("remove it{}{}", key.instead, named));
             solver.erase(key.name);
         }
     }

@@ -380,7 +380,7 @@ std::vector<Key> solver_keys() {
     std::vector<Key> keys{
         {"solver", "method", one_of(methods), "", field(&SolverTable::method), "the method"},
         {"solver", "tolerance_px", number(kAbove0), "px", field(&AutoDef::tolerance_px),
-         "the error estimate of displayed positions stays below it"},
+         "the limit of the error estimate of displayed positions"},
     };
     const std::vector<Key> named = method_keys("solver");
     keys.insert(keys.end(), named.begin(), named.end());

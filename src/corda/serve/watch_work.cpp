@@ -94,6 +94,9 @@ void show(WatchState& state, const Film& film) {
         side_px = state.side_px;
     });
     draw(state, *next, next->pictures.playhead());
+    bool was_wrong = false;
+    update(state, [&] { was_wrong = !state.problems.empty(); });
+    if (was_wrong && state.def.on_problems) state.def.on_problems({});
     update(state, [&] {
         state.film = side_px == state.side_px ? next : next_film(state, film, words);
         state.problems.clear();

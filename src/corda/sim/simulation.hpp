@@ -126,9 +126,9 @@ class Simulation {
 
 /// Positions of all particles at some times, from another simulation or a measurement. At these times the
 /// positions are those that were given, bit for bit. Between two of them each particle follows the cubic
-/// polynomial through both positions with the velocity at both. The velocity at a time is that of the parabola
-/// through this time and its two neighbours; at the first and the last time, of the parabola through the
-/// outermost three. After the last time, all rest. Never changes once it is made.
+/// polynomial through both positions with the velocity at both. The velocity at a time is that of the
+/// parabola through this time and its two neighbours; at the first and the last time, of the parabola through
+/// the outermost three. After the last time, all rest. Never changes once it is made.
 class GivenMotion {
   public:
     static constexpr double kMinIntervalSeconds = 1e-9;

@@ -253,7 +253,7 @@ method = "relaxation"\ntolerance_px = 0.1 | 5:16 solver.tolerance_px | method "r
 tolerance = 1e-9 | 4:13 solver.tolerance | only exact; remove it
 method = "exact"\norder = 4 | 5:9 solver.order | only rattle; remove it
 method = "exact"\nstep = 0.01 | 5:8 solver.step | only rattle, relaxation; remove it
-reach = 7 | 4:9 solver.reach | method "auto" does not use it, only relaxation; remove it | reach = 7 => ; + method = "relaxation"
+reach = 7 | 4:9 solver.reach | method "auto" does not use it, only relaxation; remove it: bars to farther particles make a straight rope a rigid rod, and its equations singular, or give method = "relaxation" | reach = 7 => ; + method = "relaxation"
 method = "rattle"\nreach = 7 | 5:9 solver.reach | a rigid rod, and its equations singular
 method = "exact"\nreach = 7 | 5:9 solver.reach | a rigid rod, and its equations singular
 method = "rattle"\ndelta = 0.1 | 5:9 solver.delta | remove it, or give world.drag | delta = 0.1 => ; delta = 0.1 => [world]\ndrag = 0.1
