@@ -23,8 +23,8 @@ struct SceneNumber {
 };
 
 /// The numbers of a scene file that change motion or picture, in the order of the file: those of long lists
-/// and of [video] and [golden], and indices of pins are left out. Throws corda::Error: kInvalidScene if it is no TOML, kUsage for
-/// a setting that is not key=value.
+/// and of [video] and [golden], and indices of pins are left out. Throws corda::Error: kInvalidScene if it is
+/// no TOML, kUsage for a setting that is not key=value.
 [[nodiscard]] std::vector<SceneNumber> numbers_of(std::string_view text, const std::string& name,
                                                   const std::vector<Setting>& settings = {});
 

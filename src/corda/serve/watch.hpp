@@ -20,8 +20,8 @@ struct WatchDef {
     std::optional<int> longest_side_px = {};
     std::size_t picture_bytes = std::size_t{96} << 20U;  ///< room for pictures that are kept
     FilmDef film;                                        ///< how to reach OpenGL
-    /// Called on a thread of the watch with the problems that keep it from showing the file, and with none once
-    /// it shows the file again; may be empty.
+    /// Called on a thread of the watch with the problems that keep it from showing the file, and with none
+    /// once it shows the file again; may be empty.
     std::function<void(const std::vector<Problem>&)> on_problems = {};
 };
 
