@@ -105,11 +105,10 @@ void warn_of_room(const Console& console, const Film& film) {
     const double extent_m = std::max(extent_of(system.x_m), extent_of(system.y_m));
     const double height_m = *film.camera().height_m;
     if (!given.height_m && given.path.empty() && extent_m > 0.0 && height_m > kFar * extent_m)
-        console.warning(
-            fmt::format("{}: the camera is {:.3g} m high to show the whole motion, {:.0f} times the extent "
-                        "of the start; give "
-                        "camera.center and camera.height to show a part of it",
-                        film.scene().source, height_m, height_m / extent_m));
+        console.warning(fmt::format(
+            "{}: the camera is {:.3g} m high to show the whole motion, {:.0f} times the extent of the start; "
+            "give camera.center and camera.height to show a part of it",
+            film.scene().source, height_m, height_m / extent_m));
 }
 
 void warn_of_branch(const Console& console, const Film& film) {

@@ -111,8 +111,7 @@ Scene look_in_print(const Scene& scene, double width_mm, double pixels_per_inch,
         !is_picture_size(std::lround(width_px), std::lround(height_px)))
         throw_usage(
             "width_mm {} at {} pixels per inch is {}x{} pixels, not 1 .. {} per side and {} in all; choose "
-            "another "
-            "width or ppi",
+            "another width or ppi",
             width_mm, pixels_per_inch, width_px, height_px, kMaxSidePx, kMaxPicturePx);
     video.width_px = static_cast<int>(width_px);
     video.height_px = static_cast<int>(height_px);
