@@ -67,6 +67,12 @@ watch SCENE --port 70000 | 2 | "70000" is not a number within 0 .. 65535
 simulate SCENE --decimal komma | 2 | --decimal: komma not in {point,comma}
 plan SCENE --duration nan | 2 | give the duration in s, > 0 | nan => 0.1
 plan SCENE --size {0x10,axb,64x99999} | 2 | size
+render SCENE DIR/b.mp4 | 2 | the output is named by -o | DIR/b.mp4 => -o DIR/b.mp4
+render SCENE -o DIR/c.mp4 --hold 0.5 | 2 | it is a key of the scene: --set video.hold=... | --hold 0.5 => --set video.hold=0.5
+plan SCENE --mass 2 | 2 | it is a key of the scene: --set rope[0].mass=... | --mass 2 => --set rope[0].mass=2
+plan SCENE --set world.duration = 1 | 2 | a setting has no spaces: --set world.duration=2 | world.duration = 1 => world.duration=2
+strobe SCENE --at 0 0.05 -o DIR/s.png | 2 | "0.05" was not expected; lists have commas and no spaces: --at 0,0.5 | 0 0.05 => 0,0.05
+--json plan SCENE | 2 | options stand behind the command; begin with corda plan | --json plan SCENE => plan SCENE --json
 plan SCENE --size 64by64 | 2 | write e.g. 1920x1080 | 64by64 => 1920x1080
 plan SCENE --set video.fps | 2 | give --set key=value, e.g. --set video.fps=30 or --set rope[0].mass=2 | video.fps => video.fps=30 ; video.fps => rope[0].mass=2
 plan SCENE --set rope.mass=2 | 3 | give an index: rope[0] | rope.mass => rope[0].mass

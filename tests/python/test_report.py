@@ -253,6 +253,7 @@ hang = { links = 1, length = 1.0, angle_deg = 20.0, from = [1.5, 0.0] }
     assert ("The period of second is 2,0215 s, by 5 passages below the pin; that of a point pendulum of this amplitude is "
             "2,0215 s.") in page
     assert "There is no energy error to tell: supports that move do work." in page
+    assert "at tolerance 0,0" in page and "at tolerance 0.0" in (tmp_path / "rep" / "setting.csv").read_text()
     # A name that is longer than the axis makes the page higher.
     names = subprocess.run(["pdftotext", tmp_path / "rep" / "phase_85mm.pdf", "-"], capture_output=True, text=True, check=True)
     assert "Winkelgeschwindigkeit (rad/s)" in names.stdout

@@ -203,7 +203,11 @@ int run(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
         auto problem = unknown_option(app, argc, argv);
-        if (!problem) problem = unexpected_word(app, argc, argv);
+        const auto is = [&error](CLI::ExitCodes code) {
+            return error.get_exit_code() == static_cast<int>(code);
+        };
+        if (!problem && (is(CLI::ExitCodes::ExtrasError) || is(CLI::ExitCodes::RequiredError)))
+            problem = unexpected_word(app, argc, argv);
         return fail(early, {ExitCode::kUsage, problem.value_or(fmt::format("{}; see --help", error.what()))});
     } catch (const Error& error) {
         return fail(early, error);

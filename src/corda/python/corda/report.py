@@ -289,11 +289,11 @@ class _Report:
         title = motion.title or _corda.translated("Report of {}", motion.language).replace("{}", motion.name)
         setting = [("Bodies", motion.system), ("Method", motion.solver), ("Duration", f"{motion.duration:g} s"),
                    ("Rows", f"{motion.rate} per second")]
-        setting = [(name, localized(value)) for name, value in setting] + [("Corda", __version__)]
-        setting += [("Ends early", ends_early)] if ends_early else []
-        self.folder.write("setting.csv", csv_text(["name", "value"], setting))
+        rest = [("Corda", __version__)] + ([("Ends early", ends_early)] if ends_early else [])
+        self.folder.write("setting.csv", csv_text(["name", "value"], setting + rest))
+        shown = [(name, localized(value)) for name, value in setting] + rest
         page = Page(WIDTHS_MM, self.svgs, motion.language)
-        self.folder.write("report.html", page.html(title, self.chapters, _corda.translated("Setting", motion.language), setting))
+        self.folder.write("report.html", page.html(title, self.chapters, _corda.translated("Setting", motion.language), shown))
 
 
 def _with_files(error, folder):
