@@ -107,9 +107,10 @@ std::optional<view::ColorScale> color_scale(const Scene& scene, const sim::Histo
 /// The camera at rest that shows all particles within these bounds.
 CameraDef fitted_camera(const Look& look, std::span<const MotionBounds> bounds) {
     std::vector<view::Drawn> drawn = view::drawn(look.view, bounds);
-    std::ranges::copy(view::drawn_labels(look.overlay.area, look.overlay.labels, bounds),
-                      std::back_inserter(drawn));
     const VideoDef& video = look.scene.video;
+    const double metres_per_px = look.camera.height_m.value_or(0.0) / video.height_px;
+    std::ranges::copy(view::drawn_labels(look.overlay.area, look.overlay.labels, bounds, metres_per_px),
+                      std::back_inserter(drawn));
     return view::fit_camera(look.scene.camera, look.system->origin_m, drawn, video.width_px, video.height_px,
                             look.overlay.insets);
 }

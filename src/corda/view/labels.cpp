@@ -159,13 +159,16 @@ bool stack_labels(const TextArea& area, std::span<BodyLabel> labels, const State
 }
 
 std::vector<Drawn> drawn_labels(const TextArea& area, std::span<const BodyLabel> labels,
-                                std::span<const MotionBounds> bounds) {
+                                std::span<const MotionBounds> bounds, double metres_per_px) {
     std::vector<Drawn> drawn;
     for (const BodyLabel& label : labels) {
         const double width_px = area.words.width_px(label.text, area.em_px);
-        const double gap_px = distance_px(area, label, label.clear_px);
+        const double gap_px = distance_px(area, label, label.clear_px) - label.raise_px;
         Drawn text;
         text.bounds = bounds[label.particle].widened(label.clear_m);
+        if (label.raise_px > 0.0 && !text.bounds.empty())
+            text.bounds.include(text.bounds.max_m().x,
+                                text.bounds.max_m().y + label.raise_px * metres_per_px);
         text.up_px = gap_px + kAscent * area.em_px;
         const bool is_above = label.from == label.particle;
         text.left_px = text.right_px = is_above ? 0.5 * width_px : gap_px + width_px;

@@ -51,9 +51,11 @@ struct LabelPlace {
 [[nodiscard]] bool stack_labels(const TextArea& area, std::span<BodyLabel> labels, const State& state,
                                 const Camera& camera);
 
-/// Extents of labels of particles that stay within `bounds`.
+/// Extents of labels of particles that stay within `bounds`. Labels are raised over what rises in metres, so
+/// that the scale in which `raise_px` was found gives its metres.
 [[nodiscard]] std::vector<Drawn> drawn_labels(const TextArea& area, std::span<const BodyLabel> labels,
-                                              std::span<const MotionBounds> bounds);
+                                              std::span<const MotionBounds> bounds,
+                                              double metres_per_px = 0.0);
 
 /// Adds a label; one far outside the frame is left out.
 void draw_label(const TextArea& area, const BodyLabel& label, const LabelPlace& place, DrawList& list);
