@@ -1,5 +1,3 @@
-#include <malloc.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
@@ -16,6 +14,7 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/problem_json.hpp"
 #include "corda/core/removed.hpp"
@@ -215,14 +214,6 @@ int run(int argc, char** argv) {
     return act(Console(console_def), action, fmt::format("'{}'", fmt::join(argv + 1, argv + argc, " ")));
 }
 
-/// Lets the memory of a picture serve the next one: zeroing fresh pages took 14 % of a render.
-void keep_memory() {
-    constexpr int kMaxOfHeap = 32 << 20;  // glibc's limit
-    constexpr int kMaxKept = 1 << 30;
-    static_cast<void>(mallopt(M_MMAP_THRESHOLD, kMaxOfHeap));
-    static_cast<void>(mallopt(M_TRIM_THRESHOLD, kMaxKept));
-}
-
 /// SVT-AV1 prints its settings unless told otherwise; a wish of the user stays.
 void keep_encoders_quiet() {
     setenv("SVT_LOG", "1", 0);
@@ -233,7 +224,7 @@ void keep_encoders_quiet() {
 
 int main(int argc, char** argv) {
     try {
-        corda::app::keep_memory();
+        corda::keep_memory();
         corda::app::keep_encoders_quiet();
         corda::app::keep_standard_streams();
         return corda::app::run(argc, argv);

@@ -1,5 +1,6 @@
 #include "corda/core/machine.hpp"
 
+#include <malloc.h>
 #include <sched.h>
 
 #include <algorithm>
@@ -16,6 +17,13 @@ int usable_cores() {
 
 int jobs_of(int asked) {
     return asked > 0 ? asked : usable_cores();
+}
+
+void keep_memory() {
+    constexpr int kMaxOfHeap = 32 << 20;  // glibc's limit
+    constexpr int kMaxKept = 1 << 30;
+    static_cast<void>(mallopt(M_MMAP_THRESHOLD, kMaxOfHeap));
+    static_cast<void>(mallopt(M_TRIM_THRESHOLD, kMaxKept));
 }
 
 }  // namespace corda

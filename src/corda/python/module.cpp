@@ -2,6 +2,7 @@
 #include <pybind11/functional.h>
 #include <pybind11/stl.h>
 
+#include <corda/core/machine.hpp>
 #include <corda/film/plan_text.hpp>
 #include <corda/golden/check_golden.hpp>
 #include <corda/golden/compare.hpp>
@@ -207,6 +208,7 @@ PYBIND11_MODULE(_corda, module) {
     add_errors(module);
     add_film(module);
     corda::python::add_sweep(module);
+    module.def("keep_memory", &corda::keep_memory);
     module.def("begin_end", &Calls::begin_end);
     module.def("forget_calls", &Calls::forget);
     module.def("compare", [](const py::object& a, const py::object& b) {

@@ -3,7 +3,7 @@
 import importlib
 import sys
 
-from . import Error, _console, __version__
+from . import Error, _console, _corda, __version__
 
 _COMMANDS = {"sweep": "make many samples of a scene as a labelled data set",
              "report": "draw the figures that a paper shows of a scene"}
@@ -13,6 +13,7 @@ def _main(argv):
     at = next((k for k, word in enumerate(argv) if not word.startswith("-")), None)
     command = None if at is None else argv[at]
     if command in _COMMANDS:
+        _corda.keep_memory()
         return importlib.import_module(f".{command}", __package__).main(argv[:at] + argv[at + 1:])
     console = _console.Console("--json" in argv)
     try:

@@ -12,7 +12,7 @@ import signal
 import threading
 import time
 
-from . import _error, _shards
+from . import _corda, _error, _shards
 from ._archive import read_plain, sha256_of
 from ._corda import Error
 from ._sample import make_sample
@@ -58,6 +58,7 @@ class _Worker:
     @classmethod
     def start(cls, definition, gl):
         cls.definition, cls.gl = definition, gl
+        _corda.keep_memory()
         signal.signal(signal.SIGTERM, cls._stop)
         threading.Thread(target=cls._end_with_parent, daemon=True).start()
 
