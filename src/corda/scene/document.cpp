@@ -146,14 +146,14 @@ void explain_line(std::string_view text, const std::string& source_name) {
         return false;
     }));
     if (value == std::string_view::npos) return;
-    const bool is_quoted = line[value] == '"';
-    if (is_quoted && std::ranges::count(line, '"') == 1)
+    if (line[value] == '"' && std::ranges::count(line, '"') == 1)
         fail_at(place_of(text, begin + value, source_name), "a text has no closing quote", "end it with \"");
     if (!open.empty())
         fail_at(place_of(text, open.back(), source_name), "a table in braces has no end in its own line",
                 "write it on one line, or as a table [...] with a line for each key");
     std::string word(line.substr(value, line.find_first_of(",#]}", value) - value));
     word.erase(word.find_last_not_of(" \t") + 1);
+    if (word.empty()) return;
     const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
     const std::size_t unit = word.find_first_not_of("0123456789+-.eE_");
     std::string remedy;

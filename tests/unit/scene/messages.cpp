@@ -404,6 +404,7 @@ TEST(SceneMessages, OfRemovedKeysNameWhatReplacesThem) {
 TEST(SceneMessages, OfSyntaxNameThePlace) {
     for (const auto& [toml, begin, part] : std::vector<std::array<std::string, 3>>{
              {"schema = \n", "swing.toml:1:10: ", "expected value"},
+             {"schema = ,\n", "swing.toml:1:10: ", "see https://toml.io for the syntax"},
              {"[overlay]\ntitle = \"A rope\n",
               "swing.toml:2:9: ", "a text has no closing quote; end it with \""},
              {"[overlay]\ntitle = A rope # or two\n",
