@@ -96,13 +96,10 @@ void warn_of_room(const Console& console, const Film& film) {
     for (const std::string& problem : film.left_out())
         console.warning(fmt::format("{}: {}", film.scene().source, problem));
     constexpr double kFar = 20.0;  // extents of the start: of 1080 pixels, it takes 54
-    const System& system = film.system();
-    const auto extent_of = [](const std::vector<double>& values) {
-        const auto [low, high] = std::ranges::minmax(values);
-        return high - low;
-    };
+    const MotionBounds start = whole_bounds_of_start(film.system());
+    const Vec2 extent = start.max_m() - start.min_m();
     const CameraDef& given = film.scene().camera;
-    const double extent_m = std::max(extent_of(system.x_m), extent_of(system.y_m));
+    const double extent_m = std::max(extent.x, extent.y);
     const double height_m = *film.camera().height_m;
     if (!given.height_m && given.path.empty() && extent_m > 0.0 && height_m > kFar * extent_m)
         console.warning(fmt::format(

@@ -261,6 +261,13 @@ class MotionBounds {
     return bounds;
 }
 
+/// Of all particles together.
+[[nodiscard]] inline MotionBounds whole_bounds_of_start(const System& system) {
+    MotionBounds start;
+    start.include({0.0, system.x_m, system.y_m});
+    return start;
+}
+
 }  // namespace corda
 
 namespace corda::sim {

@@ -57,13 +57,6 @@ constexpr double kCheckStep = 1.0 / 3.0;
 /// Steps divide this, whatever the video's frame interval is, so that a preview shows the same motion.
 constexpr double kNominalIntervalSeconds = 1.0 / 60.0;
 
-/// Of all particles together.
-MotionBounds whole_bounds_of_start(const System& system) {
-    MotionBounds start;
-    start.include({0.0, system.x_m, system.y_m});
-    return start;
-}
-
 bool has_kinks(const System& system) {
     return std::ranges::any_of(system.bodies, [](const Body& body) {
         return body.material.is_string && body.material.compliance_1_n > 0.0;
