@@ -125,7 +125,8 @@ void report_format(const Console& console, const Scene& scene, const CheckedOutp
         std::string_view(format.ending->muxer) == "gif")
         console.warning(fmt::format(
             "a GIF has no half transparent pixels: edges will be hard{}; .webm and .mov keep them",
-            scene.video.shutter > 0.0 ? ", and what motion blur makes fainter than half is left out" : ""));
+            scene.video.shutter > 0.0 ? ", and parts that motion blur makes fainter than half are left out"
+                                      : ""));
 }
 
 void check_standard_output(const Console& console, const std::string& output) {

@@ -10,9 +10,9 @@ namespace corda {
 /// The number of jobs: as asked for; for 0, one per usable core.
 [[nodiscard]] int jobs_of(int asked);
 
-/// Lets memory of this process that becomes free serve what comes next, up to 1 GiB, instead of going back to
-/// the system: zeroing fresh pages took 14 % of a render and 20 % of a sweep. For Corda's own programs: a
-/// library does not decide this for a process.
+/// Keeps up to 1 GiB of freed memory in this process for later pictures instead of giving it back to the
+/// system: zeroing fresh pages took 14 % of a render and 20 % of a sweep. For Corda's own programs: a library
+/// does not decide this for a process.
 void keep_memory();
 
 /// Seconds on a clock that only goes forward.

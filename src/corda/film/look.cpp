@@ -119,6 +119,7 @@ CameraDef fitted_camera(const Look& look, std::span<const MotionBounds> bounds) 
 /// they are raised as that camera, given by a scene, would have them. Where raised ones would take most of
 /// the picture, as over a rope that stands on its pin, the camera stays as it is.
 void raise_labels(const Motion& motion, std::span<const MotionBounds> bounds, Look& look) {
+    if (look.overlay.labels.empty()) return;
     constexpr double kMaxGrowth = 1.3;  // of the camera's height for raised labels
     const bool is_fitted = !look.track && !look.scene.camera.height_m;
     const bool moves = look.track || !motion.system.moves.empty();

@@ -135,8 +135,8 @@ bool stack_labels(const TextArea& area, std::span<BodyLabel> labels, const State
                   const Camera& camera) {
     constexpr int kMaxRows = 3;  // more than its own
     const auto box_of = [&](const BodyLabel& label) {
-        return label_box(area, label.text, place_of(label, state, camera), 0,
-                         distance_px(area, label, place_of(label, state, camera).clear_px), area.words);
+        const LabelPlace place = place_of(label, state, camera);
+        return label_box(area, label.text, place, 0, distance_px(area, label, place.clear_px), area.words);
     };
     const int gap_px = rounded(kGap * area.em_px);
     std::vector<PixelRect> taken;
