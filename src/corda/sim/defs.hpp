@@ -163,8 +163,8 @@ struct ExactDef {
     /// Error of the positions after some seconds, relative to the rope's length; kMinTolerance ..
     /// kMaxTolerance.
     double tolerance = 1e-9;
-    /// Implicit steps, for long ropes of rigid links that hang from pins: their number follows from the
-    /// tolerance and not from the number of links.
+    /// Implicit steps, for long or stiff ropes that hang from pins: their number follows from the tolerance
+    /// and not from the number of links.
     bool implicit = false;
 
     friend bool operator==(const ExactDef&, const ExactDef&) = default;

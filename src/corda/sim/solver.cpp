@@ -13,7 +13,7 @@
 #include "corda/sim/events.hpp"
 #include "corda/sim/exact/chain_dynamics.hpp"
 #include "corda/sim/exact/exact.hpp"
-#include "corda/sim/exact/radau_chain.hpp"
+#include "corda/sim/exact/implicit_part.hpp"
 #include "corda/sim/moving_pins.hpp"
 #include "corda/sim/phases.hpp"
 #include "corda/sim/rattle/rattle.hpp"
@@ -157,14 +157,24 @@ std::vector<double> hanging_tensions_n(const System& system, const Body& body, c
     return tension_n;
 }
 
-/// Bound on the angular frequency in 1/s at which the tensions at t = 0 make particles of a rigid chain swing
-/// across its links: Gershgorin's, the largest over all particles of 2 w sum of T / l. 0 if links are or
-/// might be compressed.
+/// Estimates of the tensions of links that stretch between pins: they carry all that hangs there.
+std::vector<double> slung_tensions_n(const System& system, const Body& body, const Forces& forces) {
+    double weight_n = 0.0;
+    for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i)
+        if (!system.is_pinned(i)) weight_n += system.mass_kg[i] * forces.strength_m_s2();
+    return std::vector<double>(body.bar_count, weight_n);
+}
+
+/// Bound on the angular frequency in 1/s at which the tensions at t = 0, or soon after it if links stretch,
+/// make particles of a chain swing across its links: Gershgorin's, the largest over all particles of 2 w sum
+/// of T / l. 0 if rigid links are or might be compressed.
 double tension_frequency_1_s(const System& system, const Body& body, const Forces& forces) {
     const std::span<const Bar> bars = bars_of(system, body);
     std::vector<double> tension_n;
     if (pin_count(system, body) == 1 && body.is_chain) {
         tension_n = hanging_tensions_n(system, body, forces);
+    } else if (body.material.compliance_1_n > 0.0) {
+        tension_n = slung_tensions_n(system, body, forces);
     } else if (system.bodies.size() == 1) {
         ChainDynamics dynamics(system, {&body, 1}, forces);
         dynamics.tensions(dynamics.initial_state().data(), tension_n);
@@ -297,17 +307,24 @@ bool knows_tensions(const MethodDef& method) {
 
 double most_implicit_steps_1_s(const System& system, const Body& body, const Forces& forces) {
     if (!ImplicitPart::can_move(system, body)) return 0.0;
-    constexpr double kFrequencyTimesStep = 5.0;  // of explicit steps
-    constexpr double kCostOfExplicit =
-        140.0 / 150.0;  // of a step, by implicit ones; ropes of 20 to 10 000 links
-    return kCostOfExplicit * tension_frequency_1_s(system, body, forces) / kFrequencyTimesStep;
+    // Of explicit steps, which take as long as implicit ones: 80 to 120 ns per link.
+    constexpr double kFrequencyTimesStep = 5.0;
+    const double across_1_s = tension_frequency_1_s(system, body, forces);
+    if (body.material.compliance_1_n == 0.0 || across_1_s == 0.0) return across_1_s / kFrequencyTimesStep;
+    const ElasticForces elastic(system, body.first_particle, body.particle_count);
+    return std::sqrt(elastic.common_square_frequency()) / kFrequencyTimesStep;
 }
 
 double implicit_steps_1_s(const System& system, const Body& body, const Forces& forces, double tolerance) {
     // The frequency of the shortest wave over twice the number of links is that of the whole rope.
-    constexpr double kStepsOfSwing = 12.0;  // at a tolerance of 1; they grow with its inverse fourth root
-    return kStepsOfSwing / std::sqrt(std::sqrt(tolerance)) * tension_frequency_1_s(system, body, forces) /
-           (2.0 * static_cast<double>(body.link_count));
+    const double swing_1_s =
+        tension_frequency_1_s(system, body, forces) / (2.0 * static_cast<double>(body.link_count));
+    // At a tolerance of 1.
+    constexpr double kStepsOfSwing = 12.0;      // they grow with its inverse fourth root
+    constexpr double kStepsIfStretching = 3.6;  // with vibrations along the rope, with its root
+    const double root = std::sqrt(tolerance);
+    return swing_1_s *
+           (body.material.compliance_1_n > 0.0 ? kStepsIfStretching / root : kStepsOfSwing / std::sqrt(root));
 }
 
 LoadMeter::LoadMeter(const System& system) {

@@ -205,7 +205,7 @@ class Refusal : public Error {
         kUndecidedString,     ///< `exact`: the start does not determine which links of a string are taut
         kUnlikeMoves,         ///< pins of one body move differently
         kTautBetweenPins,     ///< a rigid rope that is straight between two pins
-        kImplicit,            ///< `exact`, implicit: a body that does not hang from a pin, or resists bending
+        kImplicit,            ///< `exact`, implicit: see ImplicitPart::can_move
         kDependentBars,       ///< `rattle`: the lengths of rigid bars depend on each other
         kMaterial,            ///< `relaxation`: compliance, a string or bending
         kUnknownTensions,     ///< tensions are requested that the method does not know

@@ -68,9 +68,9 @@ bool has_kinks(const System& system) {
 /// in 1.6 times as many steps.
 constexpr std::size_t kImplicitTrials = 3;
 constexpr std::size_t kMaxImplicitDigits = 7;
-constexpr double kLooser = 2.0;  ///< errors are 0.05 to 0.4 of the tolerance
+constexpr double kLooser = 2.0;               ///< errors are 0.05 to 0.4 of the tolerance
+constexpr double kLooserIfStretching = 1.25;  ///< up to 0.8 of it
 constexpr double kImplicitCheck = 0.25;
-
 constexpr double kFirstImplicitSteps = 300.0;  ///< short ones, which a start may need
 
 /// The step that `rattle` of an order takes by default.
@@ -124,8 +124,9 @@ std::vector<Candidate> exact_trials(const System& system, const WorldDef& world,
     const double wanted = tolerance_m / (is_net ? extent.x + extent.y : largest_length_m(system));
     std::size_t digits = kMaxDigits;
     while (digits < tightest.run && kTolerance[digits] > wanted) ++digits;
+    const double looser = body.material.compliance_1_n > 0.0 ? kLooserIfStretching : kLooser;
     std::size_t first = kMaxDigits;
-    while (first < kMaxImplicitDigits && kTolerance[first] > kLooser * wanted) ++first;
+    while (first < kMaxImplicitDigits && kTolerance[first] > looser * wanted) ++first;
     const double explicit_1_s = most_implicit_steps_1_s(system, body, world);
     for (std::size_t i = first; i < first + kImplicitTrials && i <= kMaxImplicitDigits; ++i) {
         const double steps_1_s =

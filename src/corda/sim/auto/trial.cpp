@@ -123,19 +123,22 @@ class Between {
 };
 
 /// Error in metres that vibrations can hide from a trial. Implicit steps damp those that displace particles
-/// by less than a share of a step of 0.002 of the tolerance, in a run and its check. If vibrations of bodies
-/// that stretch or bend limit the steps of `exact`, a run and its check damp quick ones alike. Their
+/// by less than a share of a step of 0.002 of the tolerance, in a run and its check; many steps damp larger
+/// ones along links that stretch, which then displace a swing by up to 0.8 of the tolerance. If vibrations of
+/// bodies that stretch or bend limit explicit steps, a run and its check damp quick ones alike. Their
 /// amplitude is then below the check's tolerance; otherwise its error estimates would have shortened the
 /// steps.
 double hidden_m(const System& system, const Trial& trial) {
     constexpr double kResolved = 0.9;
     constexpr double kOfImplicit = 0.05;
+    constexpr double kOfStretching = 0.5;
     const auto* run = std::get_if<ExactDef>(&trial.method);
-    if (run != nullptr && run->implicit) return kOfImplicit * run->tolerance * largest_length_m(system);
     const auto* check = std::get_if<ExactDef>(&trial.check);
     const bool vibrates = !system.bends.empty() || std::ranges::any_of(system.bodies, [](const Body& body) {
         return body.material.compliance_1_n > 0.0;
     });
+    if (run != nullptr && run->implicit)
+        return (vibrates ? kOfStretching : kOfImplicit) * run->tolerance * largest_length_m(system);
     if (run == nullptr || check == nullptr || !vibrates) return 0.0;
     // As many as it takes if the tolerance limits the steps, of order 8. Square roots are the same
     // everywhere.
@@ -256,11 +259,12 @@ class CheckedRun : NonCopyable {
     /// TooMuchWork if the run takes more than its share of PlanDef::most_updates_of_run().
     bool record(std::size_t index, Recording& recording) {
         const Timeline& timeline = def_.timeline;
+        const double time_s = timeline.time_s(index);
         if (index == 0) ++passes_;
-        if (!compare_before(timeline.time_s(index))) return false;
+        if (!compare_before(time_s)) return false;
         const bool compares = agrees() && timeline.is_frame(index);
-        if (compares) checks_.start(timeline.time_s(index), left());
-        const Status status = work_.run(most_updates_by(timeline.time_s(index)),
+        if (compares) checks_.start(time_s, left());
+        const Status status = work_.run(most_updates_by(time_s),
                                         [&] { return recording.advance(run_, timeline, def_.clock_s); });
         const bool is_lost = status == Status::kDiverged || run_.diagnostics().branched_s.has_value();
         has_diverged_ = has_diverged_ || (is_lost && agrees());

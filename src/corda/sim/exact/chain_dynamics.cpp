@@ -221,7 +221,7 @@ void add_chain(Chains& chains, const System& system, const Body& body, std::size
     for (const Forces* const forces : {&chains.forces_at_start(chain), &chains.forces_at_end(chain)})
         chain.inverse_timescale_1_s =
             std::max(chain.inverse_timescale_1_s, forces->inverse_timescale_1_s(chain.length_m, fastest_m_s));
-    if (chain.starts_pinned && chain.ends_pinned)
+    if (chain.starts_pinned && chain.ends_pinned && body.material.compliance_1_n == 0.0)
         refuse_taut_between_pins(chain.length_m, chain.span_m, from, to);
     chains.list.push_back(chain);
 }
@@ -342,7 +342,7 @@ void set_start(Chains& chains, const System& system) {
 
 }  // namespace
 
-Chains make_chains(const System& system, std::span<const Body> bodies, const Forces& forces) {
+Chains cut_at_pins(const System& system, std::span<const Body> bodies, const Forces& forces) {
     Chains chains{.forces = forces, .mass_kg = system.mass_kg};
     chains.links.resize(system.particle_count());
     chains.are_of_ring = !bodies.empty() && !bodies.front().is_chain;
@@ -353,6 +353,11 @@ Chains make_chains(const System& system, std::span<const Body> bodies, const For
     }
     chains.bending = ChainBending(system, chains.links, chains.length_m);
     set_timescales(chains);
+    return chains;
+}
+
+Chains make_chains(const System& system, std::span<const Body> bodies, const Forces& forces) {
+    Chains chains = cut_at_pins(system, bodies, forces);
     set_start(chains, system);
     return chains;
 }

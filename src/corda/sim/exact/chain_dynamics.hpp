@@ -104,7 +104,10 @@ struct ChainTensions {
 };
 
 /// `bodies`: chains of the system or parts of chains, or the one body, a closed rope. Throws corda::Refusal
-/// for a rope that is taut between two pins.
+/// for a rope of rigid links that is taut between two pins. Has no state at the start.
+[[nodiscard]] Chains cut_at_pins(const System& system, std::span<const Body> bodies, const Forces& forces);
+
+/// The same of rigid links, with the state at the start.
 [[nodiscard]] Chains make_chains(const System& system, std::span<const Body> bodies, const Forces& forces);
 
 /// Adds a free particle of the system as a chain without a link. Errors of its position are measured by

@@ -14,8 +14,8 @@
 #include "corda/sim/exact/chain_dynamics.hpp"
 #include "corda/sim/exact/chain_series.hpp"
 #include "corda/sim/exact/elastic_dynamics.hpp"
+#include "corda/sim/exact/implicit_part.hpp"
 #include "corda/sim/exact/net_dynamics.hpp"
-#include "corda/sim/exact/radau_chain.hpp"
 #include "corda/sim/exact/string/part.hpp"
 #include "corda/sim/system.hpp"
 

@@ -24,6 +24,7 @@ namespace corda::sim {
 /// - Closed ropes and nets of rigid bars in the rotations of the groups of bars that turn together
 ///   (NetDynamics), by Dop853.
 /// - Bodies whose bars stretch in the positions of their particles (ElasticDynamics), by Dop853.
+/// - Ropes, if ExactDef::implicit, in the angles and tensions of their links, by Radau IIA (ImplicitPart).
 /// - Strings of rigid links from event to event (StringPart), by Dop853.
 class Exact : public Solver {
   public:

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "corda/sim/exact/chain_dynamics.hpp"
-#include "corda/sim/exact/exact.hpp"
-#include "corda/sim/exact/radau_terms.hpp"
+#include "corda/sim/exact/radau_matrix.hpp"
 
 namespace corda::sim {
 
@@ -15,8 +14,9 @@ namespace corda::sim {
 /// src/corda/sim/exact/README.md.
 ///
 /// Angles, angular velocities and tensions of the links obey local equations (a differential-algebraic system
-/// of index 1), and a step solves them for all links together in O(n). Its length follows from the visible
-/// motion alone: vibrations that are too fast for it and smaller than the tolerance are damped.
+/// of index 1; for links that stretch, stiff differential equations), and a step solves them for all links
+/// together in O(n). Its length follows from the visible motion alone: vibrations that are too fast for it
+/// and smaller than the tolerance are damped.
 ///
 /// Source: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed., Springer 1996, IV.8
 /// (Radau IIA of order 5, error estimate, step control) and VI.1 (algebraic equations).
@@ -27,13 +27,11 @@ struct RadauChain {
     using Stages = std::array<Array, kStages>;
 
     std::size_t links = 0;
-    std::size_t first_link = 0;
-    std::size_t link_stride = 0;
     bool ends_pinned = false;
+    bool stretches = false;
     std::array<Vec2, kStages> start_pull_m_s2 = {};  ///< the uniform acceleration at the stages, seen
     std::array<Vec2, kStages> end_pull_m_s2 = {};    ///< from the first pin and from the last
     double drag_1_s = 0.0;
-    StepControl control = {};
     double tolerance_m = 0.0;  ///< of a step
     double chain_length_m = 0.0;
 
@@ -46,7 +44,7 @@ struct RadauChain {
     std::uint64_t steps = 0;
     std::uint64_t rejected_steps = 0;
 
-    Array length_m;
+    Array length_m;                                    ///< at rest
     Array inverse_mass_1_kg;                           ///< of the particle at a link's far end
     Array c, s, omega, slope;                          ///< at the end of the last step: direction, w and w'
     Array old_c, old_s, old_omega, old_slope, turned;  ///< at its start, and the angles turned in it
@@ -55,29 +53,37 @@ struct RadauChain {
     Stages old_turn, old_tension;                      ///< those of the last step
     Stages wc, ws;                                     ///< W C and W S of joints
     Array matrix_wc, matrix_ws, matrix_tension, matrix_omega;  ///< where the matrix was factorised
-    Array across, along;                                       ///< right-hand sides, then solutions
-    std::vector<radau::Complex> complex_across, complex_along;
-    std::vector<radau::Pivot<double>> pivots;
-    std::vector<radau::Pivot<radau::Complex>> complex_pivots;
+    /// Right-hand sides, then solutions, of the real eigenvalue; real and imaginary parts of the complex one.
+    Stages across, along;
+    radau::Elimination<double, radau::Two> real_part;
+    radau::Elimination<radau::Complex, radau::ComplexOf<radau::Two>> complex_part;
+
+    // Of links that stretch; otherwise empty.
+    Array stretch_m_n;                              ///< longer by this per newton
+    Array pull, pull_rate, pull_slope;              ///< the tension at the end of the last step, T' and T''
+    Array old_pull, old_pull_rate, old_pull_slope;  ///< at its start
+    Array matrix_length, matrix_growth, matrix_turning;
+
+    /// Gives each array of the chain's links its length.
+    void resize(std::size_t link_count);
 };
 
-/// A rope whose chains take implicit steps.
-class ImplicitPart final : public Exact {
-  public:
-    /// True for a rope of rigid links with a pin that does not resist bending.
-    [[nodiscard]] static bool can_move(const System& system, const Body& body);
-    /// Requires one body. Throws corda::Refusal for a system that it cannot move.
-    ImplicitPart(const System& system, const Forces& forces, const ExactDef& def);
+/// Finds the cosines and sines of the joints from the directions of the links.
+void measure_joints(RadauChain& chain);
 
-    [[nodiscard]] std::uint64_t steps() const override;
-    [[nodiscard]] std::uint64_t rejected_steps() const override;
+/// Solves a step of step_s. Returns the next step in parts of it; minus that, if it must be repeated.
+[[nodiscard]] double try_step(RadauChain& chain);
 
-  private:
-    [[nodiscard]] Dynamics& dynamics() const override { return dynamics_; }
-    Status reach(double time_s, State& state) override;
+/// Makes the step that was solved the last one. Joints are not measured.
+void accept_step(RadauChain& chain);
 
-    mutable ChainDynamics dynamics_;  ///< only its scratch memory changes
-    std::vector<RadauChain> chains_;
+/// Where the motion of links is written: one entry per link, the last two for links that stretch.
+struct LinkMotion {
+    double *c, *s, *omega;
+    double *length_m, *growth_m_s;
 };
+
+/// Writes the motion of the links at `time_s`, within the last step.
+void interpolate(RadauChain& chain, double time_s, const LinkMotion& to);
 
 }  // namespace corda::sim
