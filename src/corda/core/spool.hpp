@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
 
 namespace corda {
@@ -12,7 +11,7 @@ namespace corda {
 /// An array of doubles that may exceed the memory. A large one is in a temporary file without a name, in the
 /// folder TMPDIR or /var/tmp (/tmp often is memory). It is read and written by calls, because the pages of a
 /// mapped file would count as memory of the process. Several threads may read at once.
-class Spool : NonCopyable {
+class Spool {
   public:
     /// Arrays of more bytes are in a file.
     static constexpr std::size_t kMaxMemory = std::size_t{1} << 30;

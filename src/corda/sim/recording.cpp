@@ -113,6 +113,10 @@ Recording Recording::for_part(std::size_t particle_count, std::size_t bar_count)
     return {particle_count, most_states_, bar_count, quantity_, fields_};
 }
 
+bool Recording::fits(std::size_t particle_count, std::size_t bar_count) const {
+    return particle_count_ == particle_count && (!fields_.tensions || parts_.back().count == bar_count);
+}
+
 void Recording::clear() {
     figures_.clear();
     energy_change_j_.clear();

@@ -60,6 +60,9 @@ class Recording {
     /// An empty recording of some of the particles and bars with room for as many states.
     [[nodiscard]] Recording for_part(std::size_t particle_count, std::size_t bar_count = 0) const;
 
+    /// True if it can hold the states of so many particles and bars.
+    [[nodiscard]] bool fits(std::size_t particle_count, std::size_t bar_count) const;
+
     /// Removes all states.
     void clear();
     /// Advances a run to time size() of a timeline and adds its state, unless the run diverges. `clock_s`, if

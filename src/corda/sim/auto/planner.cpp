@@ -459,6 +459,7 @@ Plan plan_methods(const System& system, const NamedMethods& named, const WorldDe
     MotionBounds known = whole_bounds_of_start(system);
     const auto count = static_cast<std::int64_t>(system.bodies.size());
     double updates = 0.0;
+    std::optional<Recording> part;  // of the last body: the next one is often as large
     recording.clear();
     for_each_body(system, [&](const System& body, std::size_t i) {
         PlanDef of_body = def;
@@ -483,9 +484,10 @@ Plan plan_methods(const System& system, const NamedMethods& named, const WorldDe
             known.include(own.bounds());
         };
         if (count == 1) return plan_into(recording);
-        Recording part = recording.for_part(body.particle_count(), body.bars.size());
-        plan_into(part);
-        recording.add_body(part, system.bodies[i].first_particle, system.bodies[i].first_bar);
+        if (!part || !part->fits(body.particle_count(), body.bars.size()))
+            part.emplace(recording.for_part(body.particle_count(), body.bars.size()));
+        plan_into(*part);
+        recording.add_body(*part, system.bodies[i].first_particle, system.bodies[i].first_bar);
     });
     sum_up(system, plan);
     return plan;
