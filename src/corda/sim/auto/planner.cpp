@@ -109,10 +109,13 @@ Candidate candidate(const MethodDef& method, const MethodDef& check, double effo
 /// Order of `rattle` that is tried first for nets that stretch: stability limits its steps and those of
 /// `exact` alike, which err far less and cost some four times as much.
 constexpr int kCheapOrder = 2;
+/// Work of its run, in updates of a particle, up to which it is not tried: some 30 ms.
+constexpr double kTooCheap = 6e5;
 
 /// Trials of `exact`, each a hundred times tighter than the last, after cheaper ones: with implicit steps, or
 /// of `rattle`.
-std::vector<Candidate> exact_trials(const System& system, const WorldDef& world, double tolerance_m) {
+std::vector<Candidate> exact_trials(const System& system, const WorldDef& world, double tolerance_m,
+                                    double end_s) {
     std::vector<Candidate> trials;
     const TightestDigits& tightest = has_kinks(system) ? kWithKinks : kSmooth;
     // The links of a net are many times as long as its way from end to end.
@@ -139,8 +142,9 @@ std::vector<Candidate> exact_trials(const System& system, const WorldDef& world,
     if (is_net && !is_rigid_net && !refusal(system, world, RattleDef{kCheapOrder}, kNominalIntervalSeconds)) {
         const double step_s = default_step_s(system, world, kCheapOrder);
         const std::size_t check = std::min(digits + kNextDigits, tightest.check);
-        trials.push_back(candidate(RattleDef{kCheapOrder, step_s}, ExactDef{kTolerance[check]}, 1.0,
-                                   static_cast<int>(digits) - 1));
+        if (end_s / step_s * static_cast<double>(system.particle_count()) > kTooCheap)
+            trials.push_back(candidate(RattleDef{kCheapOrder, step_s}, ExactDef{kTolerance[check]}, 1.0,
+                                       static_cast<int>(digits) - 1));
     }
     for (;; digits = std::min(digits + kNextDigits, tightest.run)) {
         const std::size_t check = digits + (is_rigid_net ? kNetCheckDigits : kCheckDigits);
@@ -433,8 +437,8 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
             run_until_one_holds(system, world, def, graph_trials(system, world, def), plan, recording);
         } else {
             const double tolerance_m = def.tolerance_m(whole_bounds_of_start(system));
-            run_until_one_holds(system, world, def, exact_trials(system, world, tolerance_m), plan,
-                                recording);
+            run_until_one_holds(system, world, def, exact_trials(system, world, tolerance_m, def.last_s()),
+                                plan, recording);
             // `rattle` passes lines of bars.
             if (has_come_into_line(system, plan.trials.back()) && !refusal_of(RattleDef{})) {
                 plan.horizon_s = std::nullopt;
