@@ -176,14 +176,17 @@ class OtherSnaps {
     OtherSnaps(const System& system, const Forces& forces, const PlanDef& def, const MethodDef& check)
         : system_(system), forces_(forces), check_(std::get_if<ExactDef>(&check)), alone_(def.tolerance_m) {}
 
-    /// The largest difference of `state`, the run's, from the checks and from other outcomes.
+    /// The largest difference of `state`, that of a run of this work, from the checks and from other
+    /// outcomes.
     double difference_m(bool is_frame, const Checks& checks, const State& state, const MotionBounds& bounds,
-                        double most_updates, int& passes) {
+                        double run_updates, double most_updates, int& passes) {
         const double error_m = alone_.estimate_m() + rounding_m(system_, bounds);
         const double difference_m = checks.difference_m(state);
         alone_.add(state.time_s, is_frame, difference_m, bounds);
         const double margin_m = checks.margin_m();
         if (margin_m <= kSure * error_m && longer_m_ < std::max(kCovers * margin_m, error_m)) {
+            // Others start again from the beginning.
+            if (updates() > std::max(kSmallUpdates, kMostOfRun * run_updates)) return HUGE_VAL;
             longer_m_ = kCovers * std::max(margin_m, error_m);
             updates_before_ = updates();
             runs_.emplace(system_, forces_, *check_, longer_m_);
@@ -211,6 +214,9 @@ class OtherSnaps {
     static constexpr double kSure = 4.0;
     /// Displacement of snaps in parts of the margins that it covers.
     static constexpr double kCovers = 2.0;
+    /// Work of other outcomes after which no further ones are followed: some 0.1 s, and this many runs.
+    static constexpr double kSmallUpdates = 2e6;
+    static constexpr double kMostOfRun = 4.0;
 
     const System& system_;
     const Forces& forces_;
@@ -336,8 +342,8 @@ class CheckedRun : NonCopyable {
         if (status == Status::kDiverged && !is_unchecked_) has_diverged_ = true;
         passed_.include(state);
         if (agrees()) {
-            const double difference_m =
-                other_snaps_.difference_m(is_frame, checks_, state, passed_, left(), passes_);
+            const double difference_m = other_snaps_.difference_m(is_frame, checks_, state, passed_,
+                                                                  work_.updates(), left(), passes_);
             comparison_.add(state.time_s, is_frame, difference_m, passed_);
         }
         between_.add(state.time_s, steps());
