@@ -354,7 +354,7 @@ LongRope long_rope(unsigned number) {
     const double waves = test::pick_real(random, 0.3, test::pick(random, 0, 2) == 0 ? 60.0 : 4.0);
     const double rough =
         test::pick(random, 0, 3) == 0 ? std::pow(10.0, test::pick_real(random, -8.0, -2.0)) : 0.0;
-    const int links = test::pick(random, 400, 800);
+    const int links = test::pick(random, 150, 800);
     made.rope = rope_along(links, [&](double s) {
         return lean + bent * std::sin(waves * s) + rough * test::pick_real(random, -1.0, 1.0);
     });

@@ -308,11 +308,12 @@ bool knows_tensions(const MethodDef& method) {
 double most_implicit_steps_1_s(const System& system, const Body& body, const Forces& forces) {
     if (!ImplicitPart::can_move(system, body)) return 0.0;
     // Of explicit steps, which take as long as implicit ones: 80 to 120 ns per link.
-    constexpr double kFrequencyTimesStep = 5.0;
+    constexpr double kFrequencyTimesStep = 2.5;  // of swings of 400 and 1000 links in 3 s
+    constexpr double kIfStretching = 5.0;        // at the limit of stability
     const double across_1_s = tension_frequency_1_s(system, body, forces);
     if (body.material.compliance_1_n == 0.0 || across_1_s == 0.0) return across_1_s / kFrequencyTimesStep;
     const ElasticForces elastic(system, body.first_particle, body.particle_count);
-    return std::sqrt(elastic.common_square_frequency()) / kFrequencyTimesStep;
+    return std::sqrt(elastic.common_square_frequency()) / kIfStretching;
 }
 
 double implicit_steps_1_s(const System& system, const Body& body, const Forces& forces, double tolerance) {

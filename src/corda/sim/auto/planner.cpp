@@ -9,174 +9,13 @@
 #include <fmt/format.h>
 
 #include "corda/core/cancel.hpp"
+#include "corda/sim/auto/candidates.hpp"
 #include "corda/sim/rattle/constraint_solver.hpp"
-#include "corda/sim/rattle/rattle.hpp"
 #include "corda/sim/solver.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::sim {
 namespace {
-
-/// Tolerances of `exact` are powers of ten: a preview at another size, whose pixels are of nearly the same
-/// size, shows the same bits. They are denoted by their digits.
-constexpr std::array<double, 16> kTolerance{1.0,  1e-1, 1e-2,  1e-3,  1e-4,  1e-5,  1e-6,  1e-7,
-                                            1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15};
-constexpr std::size_t kMaxDigits = 3;
-constexpr std::size_t kNextDigits = 2;  ///< more than the last trial's
-/// More than the run's. By chance a run may err far less than its tolerance, and its check as much. False
-/// estimates of 900 random chains: 2 at 2, none at 3 (worst 0.44 of the estimate) and 4 (0.35); of 400
-/// strings that stretch, 9 at 2 and none at 4.
-constexpr std::size_t kCheckDigits = 4;
-/// For rigid nets, whose plans cost more: DOP853 takes fixed orders, so that a check at a thousandth errs
-/// some 500 times less at all times.
-constexpr std::size_t kNetCheckDigits = 3;
-
-/// Rounding moves a chain about as much as a tolerance of 1e-12 (random chains of 2 to 24 links: 0.03 of the
-/// error at 1e-10). A run and a check that both err by rounding may agree by chance, so the check of the
-/// tightest run must be better.
-struct TightestDigits {
-    std::size_t run;
-    std::size_t check;
-};
-constexpr TightestDigits kSmooth{10, 12};
-/// For strings that stretch: at the kink where they come taut, errors are far larger than rounding (400 that
-/// swing and snap: 42 horizons, 73 at 1e-10).
-constexpr TightestDigits kWithKinks{13, 15};
-
-/// A trial for closed ropes and nets: an order of `rattle` and how often its step is halved. In order of
-/// cost; each gains several digits over its predecessor.
-struct Rung {
-    int order;
-    int halvings;
-};
-constexpr std::array<Rung, 6> kGraphLadder{{{2, 0}, {4, 0}, {4, 1}, {6, 1}, {8, 1}, {8, 2}}};
-/// Step and guard of a check as a share of its trial's. `rattle` halves steps where bars whip: with the same
-/// guard, run and check may take the same steps and have the same errors. False estimates of 1000 rings: 20
-/// at 1/2 of the step, 2 (by 1.5 at most) at 1/3.
-constexpr double kCheckStep = 1.0 / 3.0;
-/// Steps divide this, whatever the video's frame interval is, so that a preview shows the same motion.
-constexpr double kNominalIntervalSeconds = 1.0 / 60.0;
-
-bool has_kinks(const System& system) {
-    return std::ranges::any_of(system.bodies, [](const Body& body) {
-        return body.material.is_string && body.material.compliance_1_n > 0.0;
-    });
-}
-
-/// Trials with implicit steps, which only long ropes have, are each ten times tighter than the last.
-/// Positions err by about the tolerance, so a check at a quarter of it shows three quarters of the error,
-/// in 1.6 times as many steps.
-constexpr std::size_t kImplicitTrials = 3;
-constexpr std::size_t kMaxImplicitDigits = 7;
-constexpr double kLooser = 2.0;               ///< errors are 0.05 to 0.4 of the tolerance
-constexpr double kLooserIfStretching = 1.25;  ///< up to 0.8 of it
-constexpr double kImplicitCheck = 0.25;
-constexpr double kFirstImplicitSteps = 300.0;  ///< short ones, which a start may need
-
-/// The step that `rattle` of an order takes by default.
-double default_step_s(const System& system, const WorldDef& world, int order) {
-    const MethodDef rattle = RattleDef{order};
-    if (!system.has_events())
-        return Rattle(system, world, RattleDef{order}, kNominalIntervalSeconds).step_s();
-    const auto solver = make_solver(system, world, {&rattle, 1}, kNominalIntervalSeconds);
-    return fixed_step_s(solver->methods().front()).value_or(kNominalIntervalSeconds);
-}
-
-/// Of `rattle` in a step.
-double stages_of(int order) {
-    return static_cast<double>(composition(order).stages.size());
-}
-
-bool is_implicit(const MethodDef& method) {
-    const auto* exact = std::get_if<ExactDef>(&method);
-    return exact != nullptr && exact->implicit;
-}
-
-/// A trial that may be run.
-struct Candidate {
-    Trial trial;
-    double effort;  ///< of a second of its run, in parts of that of other candidates
-    int digits;     ///< powers of ten by which its errors are smaller than those of other candidates, roughly
-};
-
-Candidate candidate(const MethodDef& method, const MethodDef& check, double effort, int digits) {
-    Candidate made{{}, effort, digits};
-    made.trial.method = method;
-    made.trial.check = check;
-    return made;
-}
-
-/// Order of `rattle` that is tried first for nets that stretch: stability limits its steps and those of
-/// `exact` alike, which err far less and cost some four times as much.
-constexpr int kCheapOrder = 2;
-/// Work of its run, in updates of a particle, up to which it is not tried: some 30 ms.
-constexpr double kTooCheap = 6e5;
-
-/// Trials of `exact`, each a hundred times tighter than the last, after cheaper ones: with implicit steps, or
-/// of `rattle`.
-std::vector<Candidate> exact_trials(const System& system, const WorldDef& world, double tolerance_m,
-                                    double end_s) {
-    std::vector<Candidate> trials;
-    const TightestDigits& tightest = has_kinks(system) ? kWithKinks : kSmooth;
-    // The links of a net are many times as long as its way from end to end.
-    const Body& body = system.bodies.front();
-    const MotionBounds start = whole_bounds_of_start(system);
-    const Vec2 extent = start.max_m() - start.min_m();
-    const bool is_net = !moves_as_chains(system, body);
-    const bool is_rigid_net = is_net && body.material.compliance_1_n == 0.0;
-    const double wanted = tolerance_m / (is_net ? extent.x + extent.y : largest_length_m(system));
-    std::size_t digits = kMaxDigits;
-    while (digits < tightest.run && kTolerance[digits] > wanted) ++digits;
-    const double looser = body.material.compliance_1_n > 0.0 ? kLooserIfStretching : kLooser;
-    std::size_t first = kMaxDigits;
-    while (first < kMaxImplicitDigits && kTolerance[first] > looser * wanted) ++first;
-    const double explicit_1_s = most_implicit_steps_1_s(system, body, world);
-    for (std::size_t i = first; i < first + kImplicitTrials && i <= kMaxImplicitDigits; ++i) {
-        const double steps_1_s =
-            explicit_1_s > 0.0 ? implicit_steps_1_s(system, body, world, kTolerance[i]) : 0.0;
-        if (!(steps_1_s < explicit_1_s)) break;
-        trials.push_back(candidate(ExactDef{kTolerance[i], true},
-                                   ExactDef{kImplicitCheck * kTolerance[i], true}, steps_1_s,
-                                   static_cast<int>(i)));
-    }
-    if (is_net && !is_rigid_net && !refusal(system, world, RattleDef{kCheapOrder}, kNominalIntervalSeconds)) {
-        const double step_s = default_step_s(system, world, kCheapOrder);
-        const std::size_t check = std::min(digits + kNextDigits, tightest.check);
-        if (end_s / step_s * static_cast<double>(system.particle_count()) > kTooCheap)
-            trials.push_back(candidate(RattleDef{kCheapOrder, step_s}, ExactDef{kTolerance[check]}, 1.0,
-                                       static_cast<int>(digits) - 1));
-    }
-    for (;; digits = std::min(digits + kNextDigits, tightest.run)) {
-        const std::size_t check = digits + (is_rigid_net ? kNetCheckDigits : kCheckDigits);
-        trials.push_back(candidate(ExactDef{kTolerance[digits]},
-                                   ExactDef{kTolerance[std::min(check, tightest.check)]},
-                                   explicit_1_s > 0.0 ? explicit_1_s : 1.0, static_cast<int>(digits)));
-        if (digits == tightest.run) return trials;
-    }
-}
-
-/// Trials of `rattle` for a graph, each checked by the next order (8 by 8) at kCheckStep of its step.
-std::vector<Candidate> graph_trials(const System& system, const WorldDef& world, const PlanDef& def) {
-    constexpr int kDigits = 4;  // from one to the next
-    const std::int64_t none_done = 0;
-    const CancelScope progress = report_frames(def, none_done);
-    std::vector<Candidate> trials;
-    int order = 0;
-    double stable_s = 0.0;
-    for (const Rung& rung : kGraphLadder) {
-        if (rung.order != order) {  // a large net takes seconds to prepare
-            order = rung.order;
-            stable_s = default_step_s(system, world, order);
-        }
-        const double step_s = stable_s / static_cast<double>(1 << rung.halvings);
-        trials.push_back(candidate(RattleDef{rung.order, step_s},
-                                   RattleDef{std::min(rung.order + 2, RattleDef::kOrders.back()),
-                                             kCheckStep * step_s, kCheckStep * RattleDef{}.guard},
-                                   stages_of(rung.order) / step_s,
-                                   kDigits * static_cast<int>(trials.size())));
-    }
-    return trials;
-}
 
 /// Rough work of a step in updates of a particle.
 double updates_of_step(const System& system, const MethodDef& method) {
@@ -289,15 +128,26 @@ bool has_come_into_line(const System& system, const Trial& trial) {
                               trial.steps, method_text(trial.method), end_s));
 }
 
+/// Draws the run of an earlier trial again, and makes it the last.
+void go_back_to(std::size_t number, const System& system, const WorldDef& world, const PlanDef& def,
+                BodyPlan& plan, Recording& recording) {
+    std::swap(plan.trials[number], plan.trials.back());
+    plan.method = plan.trials.back().method;
+    record(system, world, def, plan, recording);
+}
+
 /// Runs trials, cheapest first, until one holds to the end or no other is worth its price, and makes the last
 /// one the plan. Ends at the first trial of `exact` that diverges for a graph of rigid bars: they have come
-/// into line. Once trials have taken the work that planning may take, the run that failed last is drawn. If
-/// its rest would take more than a run may, the run before it is drawn; without one, the body is refused.
+/// into line. Once trials have taken the work that planning may take, the run that failed last is drawn, or
+/// one that reached farther. If its rest would take more than a run may, the run before it is drawn; without
+/// one, the body is refused.
 void run_until_one_holds(const System& system, const WorldDef& world, const PlanDef& def,
                          std::vector<Candidate> candidates, BodyPlan& plan, Recording& recording) {
+    constexpr double kShortSteps = 300.0;  // that a start may need
     const double end_s = def.timeline.time_s(def.timeline.size() - 1);
     double left_updates = def.share * def.most_updates();
     for (const Trial& trial : plan.trials) left_updates -= trial.updates;
+    const auto before = static_cast<std::ptrdiff_t>(plan.trials.size());
     std::optional<std::size_t> last;
     for (std::optional<std::size_t> i = 0; i;) {
         Trial& trial = candidates[*i].trial;
@@ -305,10 +155,8 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
         TrialKind kind;
         kind.is_first = !last;
         kind.most_updates = left_updates;
-        if (is_implicit(trial.method)) {
-            kind.most_steps_1_s = candidates.back().effort;
-            kind.first_steps = kFirstImplicitSteps + kind.most_steps_1_s * def.timeline.step_s();
-        }
+        kind.most_steps_1_s = candidates[*i].most_steps_1_s;
+        kind.first_steps = kShortSteps + kind.most_steps_1_s * def.timeline.step_s();
         std::optional<std::size_t> next;
         kind.is_last = [&](const Trial& failed, double ran_s, double run_updates) {
             trial = failed;
@@ -335,15 +183,20 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
         if (is_too_dear || (!ended && !is_implicit(trial.method))) {
             if (!last) refuse_many_steps(trial, end_s);
             // The run before it takes less.
-            std::swap(plan.trials.back(), *(plan.trials.end() - 2));
-            plan.method = plan.trials.back().method;
-            record(system, world, def, plan, recording);
+            go_back_to(plan.trials.size() - 2, system, world, def, plan, recording);
             break;
         }
         while (!ended && (!next || is_implicit(candidates[*next].trial.method))) next = next.value_or(*i) + 1;
         if (has_come_into_line(system, trial)) break;
         if (ended) last = i;
         i = next;
+    }
+    if (plan.trials.back().unchecked) {
+        const auto farthest =
+            std::ranges::max_element(plan.trials.begin() + before, plan.trials.end(), {}, &Trial::reached_s);
+        if (farthest->reached_s > plan.trials.back().reached_s)
+            go_back_to(static_cast<std::size_t>(farthest - plan.trials.begin()), system, world, def, plan,
+                       recording);
     }
     const Trial& chosen = plan.trials.back();
     plan.error_estimate_m = chosen.error_estimate_m;
@@ -425,7 +278,7 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
         return refusal(system, world, method, interval_s);
     };
     BodyPlan plan;
-    const auto exact_refusal = refusal_of(ExactDef{kTolerance[kMaxDigits]});
+    const auto exact_refusal = refusal_of(loosest_exact());
     if (exact_refusal && (is_rigid_chain(system.bodies.front()) ||
                           exact_refusal->reason() == Refusal::Reason::kBarWithoutLength))
         throw Refusal(*exact_refusal);

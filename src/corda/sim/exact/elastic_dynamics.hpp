@@ -30,6 +30,8 @@ class ElasticDynamics final : public Dynamics {
     [[nodiscard]] std::vector<ErrorScale> error_scales() const override;
 
     [[nodiscard]] double inverse_timescale_1_s() const override { return inverse_timescale_1_s_; }
+    /// Bound on the largest angular frequency at the start, in 1/s.
+    [[nodiscard]] double frequency_1_s() const { return frequency_1_s_; }
     /// Large enough that no step lets the fastest vibration grow.
     [[nodiscard]] double inverse_stable_step_1_s() const override;
 
