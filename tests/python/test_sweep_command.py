@@ -456,8 +456,9 @@ def test_a_signal_to_one_worker_is_no_interruption(folder):
     workers = [number for number in living(process.pid) if b"spawn_main" in pathlib.Path(f"/proc/{number}/cmdline").read_bytes()]
     assert len(workers) == 2
     os.kill(workers[0], signal.SIGTERM)
-    assert process.wait(60) == 75
-    assert "a process that makes samples was killed" in process.stderr.read()
+    code, messages = process.wait(60), process.stderr.read()
+    assert code == 75, messages
+    assert "a process that makes samples was killed" in messages
     wait_until(lambda: not living(process.pid))
     process = folder.start("all", "--jobs", "2", start_new_session=True)
     wait_until((folder.path / "all/shard-000001.json").exists)

@@ -21,17 +21,12 @@
 #include "corda/core/timeline.hpp"
 #include "corda/film/film.hpp"
 #include "corda/film/plan_text.hpp"
-#include "corda/scene/schema.hpp"
+#include "corda/film/print.hpp"
 #include "corda/view/overlay.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
 namespace {
-
-constexpr double kScreenPpi = 96.0;
-constexpr double kPrintPpi = 300.0;
-constexpr double kPrintPt = 8.0;
-constexpr double kPointsPerInch = 72.0;
 
 /// Options of `still`, `strobe` and `sheet`.
 struct PictureOptions {
@@ -83,6 +78,7 @@ struct Request {
     Scene scene;                       ///< in the size of the picture
     std::vector<RequestedTime> times;  ///< in the order of time
     std::vector<double> film_times_s;  ///< others of the file of `--from`, to which the camera is fitted
+    double pixels_per_inch = film::kScreenPpi;
 };
 
 struct Picture {
@@ -144,7 +140,7 @@ std::vector<RequestedTime> requested_times(const PictureOptions& options, const 
 
 /// Takes the options that the command line leaves out from the file of `--from`.
 void take_record(const std::optional<PictureOrigin>& record, Request& request) {
-    auto& [command, options, scene, times, film_times_s] = request;
+    auto& [command, options, scene, times, film_times_s, ppi] = request;
     if (options.scene.from.empty() || !options.times_s.empty() || !options.frames.empty()) return;
     if (!record) throw_usage("'{}' has no record of its time; give --at or --frame", options.scene.from);
     const bool is_frame = record->command == "frame" && command == "still";
@@ -170,53 +166,25 @@ void take_record(const std::optional<PictureOrigin>& record, Request& request) {
         options.font_pt = record->font_pt;
 }
 
-/// Gives the scene the picture size of `--width-mm`.
-void set_width(const PictureOptions& options, Scene& scene) {
-    const VideoDef& video = scene.video;
-    const double ppi = options.pixels_per_inch.value_or(kPrintPpi);
-    const double width_px = std::round(*options.width_mm / kMmPerInch * ppi);
-    const double height_px = std::round(width_px * video.height_px / video.width_px);
-    const bool is_sane = std::max(width_px, height_px) <= kMaxSidePx;
-    if (!is_sane || !is_picture_size(std::lround(width_px), std::lround(height_px))) {
-        throw_usage(
-            "--width-mm {} at {} pixels per inch is {}x{} pixels, not 1 .. {} per side and {} in all; "
-            "choose another width or --ppi",
-            *options.width_mm, ppi, width_px, height_px, kMaxSidePx, kMaxPicturePx);
-    }
-    set_size(scene, static_cast<int>(width_px), static_cast<int>(height_px));
-}
-
-double pixels_per_inch(const Request& request) {
-    const PictureOptions& options = request.options;
-    return options.width_mm ? request.scene.video.width_px * kMmPerInch / *options.width_mm
-                            : options.pixels_per_inch.value_or(kScreenPpi);
-}
-
-/// Gives the scene letters of `--font-pt`; in print, unless the scene says their size, of kPrintPt.
-void set_font(Request& request) {
-    std::optional<double>& font_pt = request.options.font_pt;
-    std::optional<double>& text_px = request.scene.overlay.text_px;
-    const double ppi = pixels_per_inch(request);
-    const scene::Range& range = scene::find_key("overlay", "text_px")->type.range;
-    const auto is_within = [&](double px) { return px >= range.low && px <= range.high; };
-    if (request.options.width_mm && !font_pt && !text_px && is_within(kPrintPt / kPointsPerInch * ppi))
-        font_pt = kPrintPt;
-    if (!font_pt) return;
-    const double px = *font_pt / kPointsPerInch * ppi;
-    if (text_px == px) return;  // of the file of --from
-    if (!is_within(px))
-        throw_usage("--font-pt {}: is {:.4g} pixels at {:.4g} per inch, not {} .. {}; choose another --ppi",
-                    *font_pt, px, ppi, range.low, range.high);
-    text_px = px;
-    request.scene.settings.push_back(fmt::format("overlay.text_px={}", px));
+/// Gives the scene the size and the letters of a picture in print.
+void set_print(Request& request) {
+    auto& [command, options, scene, times, film_times_s, ppi] = request;
+    const film::Print print =
+        film::print_of(scene, {options.width_mm, options.pixels_per_inch, options.font_pt},
+                       {"--width-mm", "--ppi", "--font-pt"});
+    if (options.width_mm) set_size(scene, print.width_px, print.height_px);
+    ppi = print.pixels_per_inch;
+    options.font_pt = print.letter_pt;
+    if (scene.overlay.text_px == print.text_px) return;
+    scene.overlay.text_px = print.text_px;
+    scene.settings.push_back(fmt::format("overlay.text_px={}", *print.text_px));
 }
 
 Request request_of(const Console& console, const PictureOptions& options, const char* command) {
     Loaded loaded = load(console, options.scene);
     Request request{command, options, std::move(loaded.scene), {}, {}};
     take_record(loaded.origin.picture, request);
-    if (options.width_mm) set_width(options, request.scene);
-    set_font(request);
+    set_print(request);
     request.times = requested_times(request.options, request.scene);
     return request;
 }
@@ -239,7 +207,7 @@ std::vector<double> times_between_frames(const Request& request) {
 
 /// The text chunks and the resolution of a picture of `made`.
 PngInfo png_info(const Request& request, const Picture& picture, PictureOrigin origin, Provenance made) {
-    const auto& [command, options, scene, times, film_times_s] = request;
+    const auto& [command, options, scene, times, film_times_s, ppi] = request;
     std::string times_text;
     std::string frames;
     for (const RequestedTime& time : picture.times) {
@@ -253,9 +221,8 @@ PngInfo png_info(const Request& request, const Picture& picture, PictureOrigin o
             origin.times, [&](const PictureTime& time) { return !time.frame && time.time_s == time_s; });
     });
     if (!are_origins) origin.film_times_s = all_s;
-    const double ppi = pixels_per_inch(request);
     origin.font_pt = options.font_pt;
-    if (ppi != kScreenPpi) origin.pixels_per_inch = ppi;
+    if (ppi != film::kScreenPpi) origin.pixels_per_inch = ppi;
     // A still of a frame has the bytes of the frame, whose number is elsewhere in the record.
     const bool is_frame = command == "still" && origin.times.front().frame &&
                           options.shutter == scene.video.shutter && origin.film_times_s.empty() &&
@@ -295,7 +262,7 @@ std::vector<double> write_pictures(const Request& request, const std::vector<Pic
 /// otherwise the scene of the request.
 ExitCode draw(const Console& console, const Request& request, const Scene& cell, const FigureDef& def,
               const std::vector<Picture>& pictures) {
-    const auto& [command, options, scene, times, film_times_s] = request;
+    const auto& [command, options, scene, times, film_times_s, ppi] = request;
     FilmDef film_def = options.film;
     film_def.stills_s = times_of(times);
     film_def.stills_shutter = def.shutter;

@@ -8,6 +8,7 @@
 #include <corda/film/film.hpp>
 #include <corda/film/motion.hpp>
 #include <corda/film/plan_text.hpp>
+#include <corda/film/print.hpp>
 #include <corda/film/series.hpp>
 #include <corda/sim/recording.hpp>
 #include <corda/sim/solver.hpp>
@@ -28,11 +29,6 @@
 
 namespace corda::python {
 namespace {
-
-constexpr double kReportPpi = 300.0;
-constexpr double kPrintPt = 8.0;
-constexpr double kScreenPpi = 96.0;
-constexpr double kPointsPerInch = 72.0;
 
 /// Whether lines of a colour can be seen on white: a contrast of 2 or more, as WCAG 2.1 defines it, without
 /// its gamma of sRGB's foot.
@@ -79,7 +75,7 @@ std::vector<std::string> curve_colors(const Scene& scene, const System& system) 
     return texts;
 }
 
-/// The look of a scene in a report: its shape, a width in millimetres at kReportPpi, letters of that size and
+/// The look of a scene in a report: its shape, a width in millimetres at kPrintPpi, letters of that size and
 /// no live plot. What the scene says in pixels keeps its share of the width.
 Scene look_in_report(const Scene& scene, double width_mm, double letter_pt) {
     // Limits of height over width, so that a picture fits a page.
@@ -89,34 +85,14 @@ Scene look_in_report(const Scene& scene, double width_mm, double letter_pt) {
     look.style = style_in_print(scene);
     VideoDef& video = look.video;
     const double shape = std::clamp(1.0 * video.height_px / video.width_px, kFlattest, kTallest);
-    const double factor = kReportPpi * width_mm / kMmPerInch / video.width_px;
+    const double factor = film::kPrintPpi * width_mm / kMmPerInch / video.width_px;
     video.width_px = static_cast<int>(std::lround(video.width_px * factor));
     video.height_px = static_cast<int>(std::lround(shape * video.width_px));
     scale_px(look, factor);
     look.overlay.plots.clear();
     look.overlay.plot_range = {};
     if (!look.overlay.energy) look.overlay.energy_zero = EnergyZero::kStart;
-    look.overlay.text_px = letter_pt / kPointsPerInch * kReportPpi;
-    return look;
-}
-
-/// The look of a scene in a width in millimetres, as `corda still --width-mm` gives it.
-Scene look_in_print(const Scene& scene, double width_mm, double pixels_per_inch,
-                    std::optional<double> letter_pt) {
-    Scene look = scene;
-    VideoDef& video = look.video;
-    const double width_px = std::round(width_mm / kMmPerInch * pixels_per_inch);
-    const double height_px = std::round(width_px * video.height_px / video.width_px);
-    if (std::max(width_px, height_px) > kMaxSidePx ||
-        !is_picture_size(std::lround(width_px), std::lround(height_px)))
-        throw_usage(
-            "width_mm {} at {} pixels per inch is {}x{} pixels, not 1 .. {} per side and {} in all; choose "
-            "another width or ppi",
-            width_mm, pixels_per_inch, width_px, height_px, kMaxSidePx, kMaxPicturePx);
-    video.width_px = static_cast<int>(width_px);
-    video.height_px = static_cast<int>(height_px);
-    if (letter_pt || !look.overlay.text_px)
-        look.overlay.text_px = letter_pt.value_or(kPrintPt) / kPointsPerInch * pixels_per_inch;
+    look.overlay.text_px = film::letter_px(letter_pt, film::kPrintPpi);
     return look;
 }
 
@@ -315,15 +291,13 @@ void save_still(const PyFilm& film, const std::string& path, const std::vector<d
                 std::optional<double> width_mm, std::optional<double> pixels_per_inch,
                 std::optional<double> letter_pt, bool force) {
     film.with_film([&](const Film& shown) {
-        double ppi = pixels_per_inch.value_or(width_mm ? kReportPpi : kScreenPpi);
+        const film::Print print = film::print_of(shown.scene(), {width_mm, pixels_per_inch, letter_pt},
+                                                 {"width_mm", "ppi", "font_pt"});
         Scene look = shown.scene();
-        if (width_mm) {
-            look = look_in_print(look, *width_mm, ppi, letter_pt);
-            ppi = look.video.width_px * kMmPerInch / *width_mm;
-        } else if (letter_pt) {
-            look.overlay.text_px = *letter_pt / kPointsPerInch * ppi;
-        }
-        write_poses(shown, look, ppi, path, times_s, force);
+        look.video.width_px = print.width_px;
+        look.video.height_px = print.height_px;
+        look.overlay.text_px = print.text_px;
+        write_poses(shown, look, print.pixels_per_inch, path, times_s, force);
         return 0;
     });
 }
