@@ -222,18 +222,18 @@ double Checks::difference_m(const State& state) const {
     constexpr double kPerRounding = 2.0;
     double largest_m = 0.0;
     for (std::size_t i = 0; i < state.x_m.size(); ++i) {
-        double distance_m = 0.0;
-        double rounding_m = 0.0;
+        double distance_m2 = 0.0;
+        double rounding_m2 = 0.0;
         for (std::size_t a = 0; a < checks_.size(); ++a) {
             const Vec2 at = checks_[a]->position_m(i);
             const Vec2 apart = at - Vec2{state.x_m[i], state.y_m[i]};
-            distance_m = std::max(length(apart.x, apart.y), distance_m);
+            distance_m2 = std::max(dot(apart, apart), distance_m2);
             for (std::size_t b = 0; are_alike_ && b < a; ++b) {
                 const Vec2 differ = at - checks_[b]->position_m(i);
-                rounding_m = std::max(length(differ.x, differ.y), rounding_m);
+                rounding_m2 = std::max(dot(differ, differ), rounding_m2);
             }
         }
-        distance_m += kPerRounding * rounding_m;
+        const double distance_m = std::sqrt(distance_m2) + kPerRounding * std::sqrt(rounding_m2);
         if (!(distance_m <= largest_m)) largest_m = std::isnan(distance_m) ? HUGE_VAL : distance_m;
     }
     return largest_m;

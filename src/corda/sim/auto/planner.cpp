@@ -136,6 +136,14 @@ void go_back_to(std::size_t number, const System& system, const WorldDef& world,
     record(system, world, def, plan, recording);
 }
 
+/// Takes what is known of the run that is drawn into the plan.
+void take_figures(const Trial& chosen, BodyPlan& plan) {
+    plan.error_estimate_m = chosen.error_estimate_m;
+    if (!chosen.to_the_end) plan.horizon_s = chosen.reached_s;
+    plan.undecided = chosen.undecided;
+    plan.unchecked = chosen.unchecked;
+}
+
 /// Runs trials, cheapest first, until one holds to the end or no other is worth its price, and makes the last
 /// one the plan. Ends at the first trial of `exact` that diverges for a graph of rigid bars: they have come
 /// into line. Once trials have taken the work that planning may take, the run that failed last is drawn, or
@@ -198,11 +206,7 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
             go_back_to(static_cast<std::size_t>(farthest - plan.trials.begin()), system, world, def, plan,
                        recording);
     }
-    const Trial& chosen = plan.trials.back();
-    plan.error_estimate_m = chosen.error_estimate_m;
-    if (!chosen.to_the_end) plan.horizon_s = chosen.reached_s;
-    plan.undecided = chosen.undecided;
-    plan.unchecked = chosen.unchecked;
+    take_figures(plan.trials.back(), plan);
     plan.diverges = recording.size() < def.timeline.size();
 }
 

@@ -32,8 +32,12 @@ class Comparison {
         if (records_.empty() || difference_m > records_.back().largest_m)
             records_.push_back({difference_m, time_s, records_.empty() ? 0.0 : records_.back().until_s});
         if (is_frame) records_.back().until_s = time_s;
-        has_parted_ = !(kEstimatePerDifference * records_.back().largest_m <=
-                        kHopeless * (*tolerance_m_)(bounds_so_far));
+        const auto has_parted = [&] {
+            return !(kEstimatePerDifference * records_.back().largest_m <= kHopeless * least_tolerance_m_);
+        };
+        if (!has_parted()) return;
+        least_tolerance_m_ = (*tolerance_m_)(bounds_so_far);
+        has_parted_ = has_parted();
     }
 
     /// Estimate of the error so far, without rounding.
@@ -71,6 +75,7 @@ class Comparison {
         double until_s;  ///< the last frame time by which it was the largest
     };
     std::vector<Record> records_;  ///< increasing
+    double least_tolerance_m_ = 0.0;
     bool has_parted_ = false;
 };
 
@@ -88,9 +93,10 @@ class Between {
     void add(double time_s, std::uint64_t steps) {
         constexpr double kGolden = 0.6180339887498949;
         constexpr double kAtFirst = 0.125;  // steps from one to the next
-        constexpr double kUntilSparser = 256.0;
+        constexpr double kUntilSparser = 128.0;
         constexpr double kCounted = 3.0;  // steps from which their length follows
         time_s_ = time_s;
+        points_ += 1.0;
         turns_ += kGolden;
         turns_ -= std::floor(turns_);
         const double every_s = kAtFirst * std::max(1.0, points_ / kUntilSparser) * (time_s - counted_s_);
@@ -109,7 +115,6 @@ class Between {
     [[nodiscard]] std::optional<double> next_s(double end_s) {
         const double time_s = time_s_ + gap_s_ * (0.5 + turns_);
         if (!(time_s > time_s_ && time_s < end_s)) return std::nullopt;
-        points_ += 1.0;
         return time_s;
     }
 

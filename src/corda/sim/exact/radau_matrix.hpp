@@ -174,7 +174,7 @@ struct Matrix {
 template <class Number, class NumberOfPair>
 struct Elimination {
     std::vector<Pivot<NumberOfPair>> pairs;  ///< from index 1 on; the weights of pair 0 are 0
-    std::array<Pivot<Number>, 2> middle;
+    std::array<Pivot<Number>, 2> middle = {};
 
     void resize(Index links) { pairs.assign((links + 1) / 2, {}); }
     [[nodiscard]] CORDA_INLINE Index pair_count() const { return pairs.size() - 1; }
