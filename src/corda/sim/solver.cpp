@@ -167,7 +167,7 @@ std::vector<double> slung_tensions_n(const System& system, const Body& body, con
 
 /// Bound on the angular frequency in 1/s at which the tensions at t = 0, or soon after it if links stretch,
 /// make particles of a chain swing across its links: Gershgorin's, the largest over all particles of 2 w sum
-/// of T / l. 0 if rigid links are or might be compressed.
+/// of T / l. 0 if links lean up from their only pin, or rigid ones between pins are compressed.
 double tension_frequency_1_s(const System& system, const Body& body, const Forces& forces) {
     const std::span<const Bar> bars = bars_of(system, body);
     std::vector<double> tension_n;

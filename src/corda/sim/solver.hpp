@@ -117,11 +117,11 @@ void validate(const MethodDef& method);
 [[nodiscard]] bool knows_tensions(const MethodDef& method);
 
 /// Number of implicit steps of `exact` per second that cost as much as explicit ones are expected to. 0 if
-/// they cannot move the body or are not tried: its links must lean down from its only pin, or all pull at the
-/// start.
+/// they cannot move the body or are not tried: its links must lean down from its only pin; with several, all
+/// pull at the start, or stretch.
 [[nodiscard]] double most_implicit_steps_1_s(const System& system, const Body& body, const Forces& forces);
 
-/// Number of implicit steps per second that are expected at this tolerance: for long ropes it is smaller.
+/// Number of implicit steps per second that are expected at this tolerance: smaller for long or stiff ropes.
 [[nodiscard]] double implicit_steps_1_s(const System& system, const Body& body, const Forces& forces,
                                         double tolerance);
 

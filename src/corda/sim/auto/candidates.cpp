@@ -59,7 +59,7 @@ constexpr std::array<Rung, 6> kGraphLadder{{{2, 0}, {4, 0}, {4, 1}, {6, 1}, {8, 
 /// at 1/2 of the step, 2 (by 1.5 at most) at 1/3.
 constexpr double kCheckStep = 1.0 / 3.0;
 
-/// Trials with implicit steps, which only long ropes have, are each ten times tighter than the last.
+/// Trials with implicit steps, which long or stiff ropes have, are each ten times tighter than the last.
 /// Positions err by about the tolerance, so a check at a quarter of it shows three quarters of the error,
 /// in 1.6 times as many steps.
 constexpr std::size_t kImplicitTrials = 3;

@@ -1,7 +1,6 @@
 #include "corda/sim/auto/planner.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -147,8 +146,9 @@ void take_figures(const Trial& chosen, BodyPlan& plan) {
 /// Runs trials, cheapest first, until one holds to the end or no other is worth its price, and makes the last
 /// one the plan. Ends at the first trial of `exact` that diverges for a graph of rigid bars: they have come
 /// into line. Once trials have taken the work that planning may take, the run that failed last is drawn, or
-/// one that reached farther. If its rest would take more than a run may, the run before it is drawn; without
-/// one, the body is refused.
+/// one that reached farther. If its rest would take more than a run may, that of the last trial that ended is
+/// drawn; without one, the body is refused. Of implicit steps that are too many, the next explicit ones
+/// follow.
 void run_until_one_holds(const System& system, const WorldDef& world, const PlanDef& def,
                          std::vector<Candidate> candidates, BodyPlan& plan, Recording& recording) {
     constexpr double kShortSteps = 300.0;  // that a start may need
@@ -157,6 +157,7 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
     for (const Trial& trial : plan.trials) left_updates -= trial.updates;
     const auto before = static_cast<std::ptrdiff_t>(plan.trials.size());
     std::optional<std::size_t> last;
+    std::size_t last_ended = 0;  // of plan.trials
     for (std::optional<std::size_t> i = 0; i;) {
         Trial& trial = candidates[*i].trial;
         bool is_too_dear = false;
@@ -190,13 +191,13 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
         left_updates -= trial.updates;
         if (is_too_dear || (!ended && !is_implicit(trial.method))) {
             if (!last) refuse_many_steps(trial, end_s);
-            // The run before it takes less.
-            go_back_to(plan.trials.size() - 2, system, world, def, plan, recording);
+            // The run of the last trial that ended takes less.
+            go_back_to(last_ended, system, world, def, plan, recording);
             break;
         }
         while (!ended && (!next || is_implicit(candidates[*next].trial.method))) next = next.value_or(*i) + 1;
         if (has_come_into_line(system, trial)) break;
-        if (ended) last = i;
+        if (ended) last = i, last_ended = plan.trials.size() - 1;
         i = next;
     }
     if (plan.trials.back().unchecked) {

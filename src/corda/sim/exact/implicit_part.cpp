@@ -64,6 +64,9 @@ void start_stretching(RadauChain& r, const Chains& chains, const System& system,
         const Vec2 along = at(system.x_m, system.y_m, after) - at(system.x_m, system.y_m, before);
         const Vec2 apart = at(system.vx_m_s, system.vy_m_s, after) - at(system.vx_m_s, system.vy_m_s, before);
         const double distance_m = length(along.x, along.y);
+        if (distance_m == 0.0)
+            throw Refusal(Refusal::Reason::kImplicit,
+                          "implicit steps cannot start from links that stretch and have no length");
         const Vec2 direction = (1.0 / distance_m) * along;
         r.c[i] = direction.x;
         r.s[i] = direction.y;
@@ -256,17 +259,20 @@ void ImplicitPart::write_stretching(Piece& piece, double time_s) {
         particles[i].place_m = particles[i].place_m + end.place_m;
         particles[i].velocity_m_s = particles[i].velocity_m_s + end.velocity_m_s;
     }
-    Vec2 open_m;
-    if (chain.ends_pinned) open_m = span_at(chains_, chain, time_s).place_m - end.place_m;
+    Span open;
+    if (chain.ends_pinned) {
+        const Span pin_at_end = span_at(chains_, chain, time_s);
+        open = {pin_at_end.place_m - end.place_m, pin_at_end.velocity_m_s - end.velocity_m_s};
+    }
     const Index count = output_.size() / 4;
     double share = 0.0;
     for (Index i = 0; i < r.links - (chain.ends_pinned ? 1 : 0); ++i) {
         share += r.length_m[i + 1] / r.chain_length_m;
         const std::size_t particle = chain.particle(i);
-        output_[particle] = particles[i].place_m.x + share * open_m.x;
-        output_[count + particle] = particles[i].place_m.y + share * open_m.y;
-        output_[2 * count + particle] = particles[i].velocity_m_s.x;
-        output_[3 * count + particle] = particles[i].velocity_m_s.y;
+        output_[particle] = particles[i].place_m.x + share * open.place_m.x;
+        output_[count + particle] = particles[i].place_m.y + share * open.place_m.y;
+        output_[2 * count + particle] = particles[i].velocity_m_s.x + share * open.velocity_m_s.x;
+        output_[3 * count + particle] = particles[i].velocity_m_s.y + share * open.velocity_m_s.y;
     }
 }
 

@@ -15,7 +15,8 @@ class ImplicitPart final : public Exact {
     /// True for a rope with a pin that does not resist bending and is no string; if it is closed, for one of
     /// rigid links.
     [[nodiscard]] static bool can_move(const System& system, const Body& body);
-    /// Requires one body. Throws corda::Refusal for a system that it cannot move.
+    /// Requires one body. Throws corda::Refusal for a system that it cannot move, for a rope of rigid links
+    /// that is taut between two pins, and for a start at which a link that stretches has no length.
     ImplicitPart(const System& system, const Forces& forces, const ExactDef& def);
 
     [[nodiscard]] std::uint64_t steps() const override;

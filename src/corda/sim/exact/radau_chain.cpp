@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "corda/core/cancel.hpp"
@@ -74,7 +73,8 @@ double buckling_1_s(const RadauChain& r) {
     for (Index i = 1; i <= r.links; ++i) {
         const double pull_n =
             r.wc[kEnd][i - 1] * r.tension[kEnd][i - 1] + r.wc[kEnd][i] * r.tension[kEnd][i + 1];
-        fastest = std::max(fastest, -2.0 * pull_n / r.length_m[i]);
+        const double stretch_m = r.stretches ? r.stretch_m_n[i] * r.tension[kEnd][i] : 0.0;
+        fastest = std::max(fastest, -2.0 * pull_n / (r.length_m[i] + stretch_m));
     }
     return std::sqrt(fastest);
 }

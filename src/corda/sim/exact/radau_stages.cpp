@@ -285,18 +285,18 @@ struct Largest {
 };
 
 /// The largest displacement if the links turn by these small angles and, where they stretch, their tensions
-/// change by so much; of the angles; and of the turns so far. NaN if one is.
+/// change by so much; of the angles; and of the turns so far. The displacement is NaN if one is.
 template <bool kStretches>
 Largest largest(const RadauChain& r, const RadauChain::Array& angle, const RadauChain::Array& tension) {
     const auto grow = [](double& most, double value) {
-        if (!(value <= most)) most = value;  // keeps a NaN
+        if (!(value <= most)) most = value;
     };
     double x_m = 0.0;
     double y_m = 0.0;
     double most_m2 = 0.0;
     Largest most;
     for (Index i = 1; i <= r.links; ++i) {
-        const double moved_m = r.length_m[i] * angle[i];
+        const double moved_m = (kStretches ? r.matrix_length[i] : r.length_m[i]) * angle[i];
         x_m -= r.s[i] * moved_m;
         y_m += r.c[i] * moved_m;
         if constexpr (kStretches) {
@@ -340,7 +340,7 @@ CORDA_AVX2_CLONES void add_corrections(RadauChain& r) {
 }
 
 /// An angle or a tension that changes in a step: its error before the matrix is applied, and that of its
-/// rate, times the step.
+/// rate.
 struct RawError {
     double value;
     double rate;
