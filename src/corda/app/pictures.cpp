@@ -1,7 +1,6 @@
 // `corda still`, `strobe` and `sheet`: pictures of a scene.
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>

@@ -17,7 +17,7 @@ struct PrintDef {
     std::optional<double> letter_pt = {};
 };
 
-/// What the fields of a PrintDef are called in errors.
+/// Names of the fields of a PrintDef in errors.
 struct PrintWords {
     const char *width_mm, *pixels_per_inch, *letter_pt;
 };

@@ -60,7 +60,7 @@ class Recording {
     /// An empty recording of some of the particles and bars with room for as many states.
     [[nodiscard]] Recording for_part(std::size_t particle_count, std::size_t bar_count = 0) const;
 
-    /// True if it can hold the states of so many particles and bars.
+    /// True if its states are those of bodies with these counts.
     [[nodiscard]] bool fits(std::size_t particle_count, std::size_t bar_count) const;
 
     /// Removes all states.

@@ -8,7 +8,6 @@
 
 #include "corda/core/cancel.hpp"
 #include "corda/sim/exact/elastic_dynamics.hpp"
-#include "corda/sim/rattle/constraint_solver.hpp"
 #include "corda/sim/rattle/rattle.hpp"
 #include "corda/sim/solver.hpp"
 #include "corda/sim/system.hpp"

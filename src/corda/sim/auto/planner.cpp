@@ -135,7 +135,7 @@ void go_back_to(std::size_t number, const System& system, const WorldDef& world,
     record(system, world, def, plan, recording);
 }
 
-/// Takes what is known of the run that is drawn into the plan.
+/// Copies the figures of the run that is drawn into the plan.
 void take_figures(const Trial& chosen, BodyPlan& plan) {
     plan.error_estimate_m = chosen.error_estimate_m;
     if (!chosen.to_the_end) plan.horizon_s = chosen.reached_s;

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "corda/core/cancel.hpp"
@@ -192,7 +190,7 @@ class OtherSnaps {
         const double margin_m = checks.margin_m();
         if (margin_m <= kSure * error_m && longer_m_ < std::max(kCovers * margin_m, error_m)) {
             // Others start again from the beginning.
-            if (updates() > std::max(kSmallUpdates, kMostOfRun * run_updates)) return HUGE_VAL;
+            if (updates() > std::max(kSmallUpdates, kMaxRuns * run_updates)) return HUGE_VAL;
             longer_m_ = kCovers * std::max(margin_m, error_m);
             updates_before_ = updates();
             runs_.emplace(system_, forces_, *check_, longer_m_);
@@ -222,7 +220,7 @@ class OtherSnaps {
     static constexpr double kCovers = 2.0;
     /// Work of other outcomes after which no further ones are followed: some 0.1 s, and this many runs.
     static constexpr double kSmallUpdates = 2e6;
-    static constexpr double kMostOfRun = 4.0;
+    static constexpr double kMaxRuns = 4.0;
 
     const System& system_;
     const Forces& forces_;

@@ -49,13 +49,18 @@ void refuse_taut_between_pins(double length_m, Vec2 span_m, std::size_t from, st
                       " m apart)");
 }
 
+Span span_at(const Chains& chains, const Chain& chain, double time_s) {
+    const Chains::Pin& from = chains.pins[chain.start_pin];
+    const Chains::Pin& to = chains.pins[chain.end_pin];
+    return {chain.span_m + (to.displacement(time_s) - from.displacement(time_s)),
+            to.velocity(time_s) - from.velocity(time_s)};
+}
+
 void close_between_pins(const Chains& chains, const Chain& chain, double time_s, double* y) {
     const std::size_t links = chains.link_count();
     const std::size_t end = chain.first_link + chain.link_count;
     const auto direction = [&](std::size_t i) { return Vec2{y[i], y[links + i]}; };
-    const Chains::Pin& from = chains.pins[chain.start_pin];
-    const Chains::Pin& to = chains.pins[chain.end_pin];
-    const Vec2 span_m = chain.span_m + (to.displacement(time_s) - from.displacement(time_s));
+    const auto [span_m, velocity_m_s] = span_at(chains, chain, time_s);
     if (dot(span_m, span_m) > chain.length_m * chain.length_m) {
         y[chain.first_link] = std::numeric_limits<double>::quiet_NaN();
         return;
@@ -75,7 +80,7 @@ void close_between_pins(const Chains& chains, const Chain& chain, double time_s,
             y[links + i] = inverse * turned.y;
         }
     }
-    Vec2 open = to.velocity(time_s) - from.velocity(time_s);
+    Vec2 open = velocity_m_s;
     for (std::size_t i = chain.first_link; i < end; ++i) {
         open = open - (chains.length_m[i] * y[2 * links + i]) * left_of(direction(i));
     }

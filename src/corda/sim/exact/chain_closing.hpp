@@ -10,6 +10,14 @@ namespace corda::sim {
 /// distance of `span_m`, is taut.
 void refuse_taut_between_pins(double length_m, Vec2 span_m, std::size_t from, std::size_t to);
 
+/// Where a particle is and how it moves, seen from another.
+struct Span {
+    Vec2 place_m, velocity_m_s;
+};
+
+/// The end of a chain between two pins, seen from its start.
+[[nodiscard]] Span span_at(const Chains& chains, const Chain& chain, double time_s);
+
 /// Brings the end of a chain between two pins back to where its pin is at `time_s`, and the end's velocity to
 /// that of the pin, by the least changes of the links' directions and angular velocities. A direction is NaN,
 /// and the run diverges, if the pins are farther apart than the chain is long.

@@ -100,18 +100,6 @@ void start_stretching(RadauChain& r, const Chains& chains, const System& system,
     }
 }
 
-/// Where a particle is and how it moves: the end of a chain between two pins, seen from its start.
-struct Span {
-    Vec2 place_m, velocity_m_s;
-};
-
-Span span_at(const Chains& chains, const Chain& chain, double time_s) {
-    const Chains::Pin& from = chains.pins[chain.start_pin];
-    const Chains::Pin& to = chains.pins[chain.end_pin];
-    return {chain.span_m + (to.displacement(time_s) - from.displacement(time_s)),
-            to.velocity(time_s) - from.velocity(time_s)};
-}
-
 /// Brings the end of a step of links that stretch to `end`: each link takes a share by its length.
 void close_stretching(RadauChain& r, const Span& end) {
     Vec2 open_m = end.place_m;

@@ -200,16 +200,14 @@ void measure_middle(RadauChain& r) {
     r.matrix_tension = r.tension[kMiddle];
     const double per_step = 1.0 / r.step_s;
     for (Index i = 1; i <= r.links; ++i) {
-        r.matrix_omega[i] = per_step * slope_at(kMiddle, r.turn[0][i], r.turn[1][i], r.turn[2][i]);
+        const Three speed = Three{r.turn[0][i], r.turn[1][i], r.turn[2][i]}.slopes(0.0, per_step);
+        r.matrix_omega[i] = speed.middle;
         if constexpr (kStretches) {
-            double speed[3];
-            for (int k = 0; k < 3; ++k)
-                speed[k] = per_step * slope_at(k, r.turn[0][i], r.turn[1][i], r.turn[2][i]) - r.omega[i];
-            const double rate = per_step * slope_at(kMiddle, r.tension[0][i] - r.pull[i],
-                                                    r.tension[1][i] - r.pull[i], r.tension[2][i] - r.pull[i]);
+            const Three rate =
+                Three{r.tension[0][i], r.tension[1][i], r.tension[2][i]}.slopes(r.pull[i], per_step);
             r.matrix_length[i] = r.length_m[i] + r.stretch_m_n[i] * r.matrix_tension[i];
-            r.matrix_growth[i] = r.stretch_m_n[i] * rate;
-            r.matrix_turning[i] = per_step * slope_at(kMiddle, speed[0], speed[1], speed[2]);
+            r.matrix_growth[i] = r.stretch_m_n[i] * rate.middle;
+            r.matrix_turning[i] = speed.slopes(r.omega[i], per_step).middle;
         }
     }
 }
