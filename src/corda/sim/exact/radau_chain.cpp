@@ -15,8 +15,8 @@ using namespace radau;
 
 /// Share of the length below which corrections are rounding alone.
 constexpr double kMinCorrection = 1e-14;
-/// Share of a step's tolerance that Newton's method may leave.
-constexpr double kShareOfNewton = 0.03;
+/// Share of a step's tolerance that Newton's method may leave: it adds up.
+constexpr double kShareOfNewton = 0.001;
 constexpr int kMaxNewtonIterations = 7;
 /// Errors in parts of the tolerance that are taken for small ones.
 constexpr double kMinError = 1e-9;
@@ -91,17 +91,32 @@ bool keeps_lengths(const RadauChain& r) {
     return true;
 }
 
-/// The first two derivatives of an angle or a tension.
+/// Where derivatives at the end of a step are written.
 struct Slopes {
-    double first, second;
+    double *first, *second;
 };
 
-/// Those at the end of a step, for these changes until its stages and the first derivative `before` at its
-/// start.
-Slopes slopes_at_end(double step_s, double first, double middle, double last, double before) {
-    const double at[] = {slope_at(0, first, middle, last) / step_s, slope_at(1, first, middle, last) / step_s,
-                         slope_at(2, first, middle, last) / step_s};
-    return {at[2], slope_at(2, at[0] - before, at[1] - before, at[2] - before) / step_s};
+/// Finds them for values that were `start` at its start, with the first derivative `before`. No arrays
+/// overlap.
+template <bool kStartsAt0>
+CORDA_INLINE void find_slopes_at_end(Index links, double step_s, const RadauChain::Stages& of,
+                                     const double* start, const double* before, Slopes to) {
+    const double per_step = 1.0 / step_s;
+    const double* const first = of[0].data();
+    const double* const middle = of[1].data();
+    const double* const last = of[2].data();
+    CORDA_INDEPENDENT
+    for (Index i = 1; i <= links; ++i) {
+        const Three at = Three{first[i], middle[i], last[i]}.slopes(kStartsAt0 ? 0.0 : start[i], per_step);
+        to.first[i] = at.last;
+        to.second[i] = at.slopes(before[i], per_step).last;
+    }
+}
+CORDA_AVX2_CLONES void slopes_of_turns(const RadauChain& r, Slopes to) {
+    find_slopes_at_end<true>(r.links, r.step_s, r.turn, nullptr, r.old_omega.data(), to);
+}
+CORDA_AVX2_CLONES void slopes_of_tensions(const RadauChain& r, Slopes to) {
+    find_slopes_at_end<false>(r.links, r.step_s, r.tension, r.old_pull.data(), r.old_pull_rate.data(), to);
 }
 
 /// The polynomial of degree 5 by Hermite that is 0 at the start of a step and `end` at its end, with these
@@ -157,23 +172,13 @@ void accept_step(RadauChain& r) {
     turn_links(r.links + 2, r.turned.data(), {r.old_c.data(), r.old_s.data()}, {r.c.data(), r.s.data()});
     std::swap(r.old_omega, r.omega);
     std::swap(r.old_slope, r.slope);
-    for (Index i = 1; i <= r.links; ++i) {
-        const Slopes end = slopes_at_end(r.step_s, r.turn[0][i], r.turn[1][i], r.turn[2][i], r.old_omega[i]);
-        r.omega[i] = end.first;
-        r.slope[i] = end.second;
-    }
+    slopes_of_turns(r, {r.omega.data(), r.slope.data()});
     if (r.stretches) {
         std::swap(r.old_pull, r.pull);
         std::swap(r.old_pull_rate, r.pull_rate);
         std::swap(r.old_pull_slope, r.pull_slope);
         r.pull = r.tension[2];
-        for (Index i = 1; i <= r.links; ++i) {
-            const double before = r.old_pull[i];
-            const Slopes end = slopes_at_end(r.step_s, r.tension[0][i] - before, r.tension[1][i] - before,
-                                             r.tension[2][i] - before, r.old_pull_rate[i]);
-            r.pull_rate[i] = end.first;
-            r.pull_slope[i] = end.second;
-        }
+        slopes_of_tensions(r, {r.pull_rate.data(), r.pull_slope.data()});
     }
     std::swap(r.old_turn, r.turn);
     std::swap(r.old_tension, r.tension);
@@ -186,8 +191,16 @@ double try_step(RadauChain& r) {
     constexpr double kCaution = 0.9;
     constexpr double kMinFactor = 0.125;
     constexpr double kMaxFactor = 8.0;
-    constexpr double kEnough = 1.2;  // a change that is worth another matrix
-    if (!solve_stages(r) || (r.stretches && !keeps_lengths(r))) return -0.5;
+    constexpr double kEnough = 1.2;  // steps of one length err alike
+    constexpr double kShorter = 0.7;
+    // A step that was not solved is not tried again soon. Where a wave passes, shorter ones err far less than
+    // they may.
+    constexpr double kOfUnsolved = 0.8;
+    constexpr double kLongerEachStep = 1.02;
+    if (!solve_stages(r) || (r.stretches && !keeps_lengths(r))) {
+        r.longest_s = kOfUnsolved * r.step_s;
+        return -kShorter;
+    }
     const double buckling = r.step_s * buckling_1_s(r);
     if (buckling > 1.0) return -std::max(kMinFactor, kCaution / buckling);
     const double error = std::max(error_m(r) / r.tolerance_m, kMinError);
@@ -199,7 +212,8 @@ double try_step(RadauChain& r) {
     if (r.last_step_s > 0.0)
         factor *= std::min(1.0, r.step_s / r.last_step_s * std::sqrt(std::sqrt(r.last_error / error)));
     r.last_error = std::max(error, kMinLastError);
-    factor = std::clamp(factor, kMinFactor, kMaxFactor);
+    r.longest_s *= kLongerEachStep;
+    factor = std::min(std::clamp(factor, kMinFactor, kMaxFactor), std::max(1.0, r.longest_s / r.step_s));
     if (buckling > 0.0) factor = std::min(factor, 1.0 / buckling);
     return factor > 1.0 && factor < kEnough ? 1.0 : factor;
 }

@@ -85,6 +85,24 @@ CORDA_INLINE double slope_at(Index k, double first, double middle, double last) 
     return kB[k][0] * first + kB[k][1] * middle + kB[k][2] * last;
 }
 
+/// The values of something at the stages. No array, because loops over stages inside one over links keep it
+/// from being compiled for several links at a time.
+struct Three {
+    double first, middle, last;
+
+    /// Slopes at the stages of what starts at `start`, per step.
+    [[nodiscard]] CORDA_INLINE Three slopes(double start, double per_step) const {
+        const double x = first - start;
+        const double y = middle - start;
+        const double z = last - start;
+        return {per_step * slope_at(0, x, y, z), per_step * slope_at(1, x, y, z),
+                per_step * slope_at(2, x, y, z)};
+    }
+    [[nodiscard]] CORDA_INLINE double weighted(const double (&weight)[3]) const {
+        return weight[0] * first + weight[1] * middle + weight[2] * last;
+    }
+};
+
 /// The polynomial through the values of the last step's stages at `time`, in parts of that step.
 inline std::array<double, 3> weights_of_stages(double time, bool starts_at_0) {
     std::array<double, 3> weights{1.0, 1.0, 1.0};
