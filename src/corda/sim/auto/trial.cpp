@@ -240,6 +240,7 @@ class CheckedRun : NonCopyable {
         : system_(system),
           def_(def),
           most_updates_(kind.most_updates),
+          most_updates_1_s_(def.most_updates_of_run() / def.last_s()),
           passes_(passes),
           forces_(world),
           run_(system, world, trial.method, def.timeline.step_s()),
@@ -314,7 +315,7 @@ class CheckedRun : NonCopyable {
     [[nodiscard]] double left() const { return std::max(0.0, most_updates_ - updates()); }
     [[nodiscard]] double most_updates_by(double time_s) const {
         constexpr double kAtFirst = 1e8;
-        return is_drawn_ ? HUGE_VAL : kAtFirst + def_.most_updates_of_run() * (time_s / def_.last_s());
+        return is_drawn_ ? HUGE_VAL : kAtFirst + most_updates_1_s_ * time_s;
     }
 
     /// Compares at times before `time_s` that are not recorded. False if the run diverges.
@@ -356,6 +357,7 @@ class CheckedRun : NonCopyable {
     const System& system_;
     const PlanDef& def_;
     double most_updates_;
+    double most_updates_1_s_;  ///< of the run
     int& passes_;
     Forces forces_;
     Simulation run_;
@@ -405,20 +407,20 @@ Trial run_trial(const System& system, const WorldDef& world, const PlanDef& def,
         if (is_last) run.draw();
     };
     recording.clear();
-    for (; i < total; ++i) {
-        check_cancelled();
-        if (!run.agrees() && !is_known) conclude();
-        if (!run.agrees() && !is_last) return trial;
-        try {
-            const CancelScope limit(count_steps);
+    try {
+        const CancelScope limit(count_steps);
+        for (; i < total; ++i) {
+            check_cancelled();
+            if (!run.agrees() && !is_known) conclude();
+            if (!run.agrees() && !is_last) return trial;
             if (!run.record(static_cast<std::size_t>(i), recording)) break;
             count_steps();
-        } catch (const TooMuchWork&) {
-            trial.steps = run.steps();
-            trial.updates = run.updates();
-            trial.too_long = true;
-            return trial;
         }
+    } catch (const TooMuchWork&) {
+        trial.steps = run.steps();
+        trial.updates = run.updates();
+        trial.too_long = true;
+        return trial;
     }
     if (i == total) run.compare_until_end();
     conclude();
