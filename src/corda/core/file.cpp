@@ -112,14 +112,28 @@ std::string_view hint_for_errno(int error_number, FileUse use) {
     }
 }
 
+ExitCode exit_code_of_errno(int error_number, ExitCode otherwise) {
+    switch (error_number) {
+        case ENOSPC:
+        case EDQUOT:
+        case EIO:
+            return ExitCode::kIo;
+        case EMFILE:
+        case ENFILE:
+        case ENOMEM:
+            return ExitCode::kTemporary;
+        default:
+            return otherwise;
+    }
+}
+
 void fail_file(std::string_view action, const std::string& path, int error_number) {
     // Only a pipe or a device makes a call wait for so long that a signal breaks it off.
     if (error_number == EINTR)
         throw_error(ExitCode::kInterrupted, "interrupted while waiting to {} '{}'", action, path);
     const std::string_view hint =
         hint_for_errno(error_number, action == "read" ? FileUse::kRead : FileUse::kWrite);
-    const bool is_temporary = error_number == EMFILE || error_number == ENFILE;
-    throw_error(is_temporary ? ExitCode::kTemporary : ExitCode::kIo, "cannot {} '{}': {}{}{}", action, path,
+    throw_error(exit_code_of_errno(error_number), "cannot {} '{}': {}{}{}", action, path,
                 std::generic_category().message(error_number), hint.empty() ? "" : "; ", hint);
 }
 
@@ -186,7 +200,7 @@ TemporaryFolder::TemporaryFolder() {
     path_ = (std::filesystem::temp_directory_path(failure) / "corda-XXXXXX").string();
     if (!failure && mkdtemp(path_.data()) == nullptr) failure.assign(errno, std::generic_category());
     if (failure)
-        throw_error(ExitCode::kIo,
+        throw_error(exit_code_of_errno(failure.value()),
                     "cannot make a folder for temporary files, '{}': {}; set TMPDIR to a folder that can be "
                     "written to",
                     path_, failure.message());

@@ -22,7 +22,7 @@ std::string temporary_folder() {
 
 [[noreturn]] void fail_open(std::size_t bytes, int error_number) {
     throw_error(
-        ExitCode::kIo,
+        exit_code_of_errno(error_number),
         "a motion of {:.3g} GiB has no temporary file in '{}': {}; free some space there, or set TMPDIR "
         "to a folder that has it",
         static_cast<double>(bytes) / static_cast<double>(1U << 30U), temporary_folder(),

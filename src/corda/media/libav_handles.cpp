@@ -51,17 +51,15 @@ std::string libav_text(int status) {
 
 void fail_libav(ExitCode code, const std::string& what, int status, std::string_view hint) {
     const std::string_view system_hint = hint_for_errno(AVUNERROR(status));
-    const bool out_of_space =
-        status == AVERROR(ENOSPC) || status == AVERROR(EDQUOT) || status == AVERROR(EIO);
+    const ExitCode exit_code = exit_code_of_errno(AVUNERROR(status), code);
     // What an encoder says in numbers of the system is not about files.
-    const bool is_system = !system_hint.empty() && (code != ExitCode::kEncoder || out_of_space);
+    const bool is_system = !system_hint.empty() && (code != ExitCode::kEncoder || exit_code == ExitCode::kIo);
     const std::string_view shown_hint = is_system ? system_hint : hint;
     const std::string log = captured_log();
     std::string message = fmt::format("{}: {}", what, libav_text(status));
     if (!log.empty()) message += fmt::format(" ({})", log);
     if (!shown_hint.empty()) message += fmt::format("; {}", shown_hint);
-    if (status == AVERROR(ENOMEM)) code = ExitCode::kTemporary;
-    throw Error(out_of_space ? ExitCode::kIo : code, message);
+    throw Error(exit_code, message);
 }
 
 int check_libav(int status, ExitCode code, const std::string& what, std::string_view hint) {
