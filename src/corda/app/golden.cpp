@@ -192,7 +192,7 @@ ExitCode run_suite(const Console& console, GoldenOptions options) {
         options.def.accepted.empty() ? run_until_asked(options.def) : golden::accept(options.def);
     const CancelScope finishing({}, CancelScope::Outer::kIgnored);  // an update has been published
     if (!options.junit.empty()) save_file(options.junit, golden::junit_xml(result));
-    if (!options.html.empty()) save_file(options.html, golden::page_html(result));
+    if (!options.html.empty()) save_file(options.html, golden::html_report(result));
     if (!options.markdown.empty()) append_markdown(options.markdown, golden::markdown(result));
     tell(console, options, result);
     if (result.count(Verdict::kInvalid) > 0) return ExitCode::kInvalidScene;

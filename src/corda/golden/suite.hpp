@@ -113,7 +113,7 @@ struct CauseText {
 
 /// One page of HTML that needs no other file. It shows, per failed picture, the reference, the new picture
 /// and sixteen times their difference, side by side, blinking, or under a slider.
-[[nodiscard]] std::string page_html(const SuiteResult& result);
+[[nodiscard]] std::string html_report(const SuiteResult& result);
 
 /// Sixteen times the difference of each channel on black, that of alpha in all three. Blue: only one of the
 /// pictures has the pixel.

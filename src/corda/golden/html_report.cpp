@@ -135,7 +135,7 @@ Image amplified(const Image& a, const Image& b) {
     return result;
 }
 
-std::string page_html(const SuiteResult& result) {
+std::string html_report(const SuiteResult& result) {
     const std::int64_t failed = std::ranges::count_if(result.pictures, &Checked::failed);
     std::string html = fmt::format(kPageHead, kPageStyle, kPicturesStyle);
     html += fmt::format("<h1>Golden pictures: {} failed</h1>\n<p>{}. Drawn by corda {}.</p>\n", failed,
