@@ -19,7 +19,7 @@ namespace {
 /// size, shows the same bits. They are denoted by their digits.
 constexpr std::array<double, 16> kTolerance{1.0,  1e-1, 1e-2,  1e-3,  1e-4,  1e-5,  1e-6,  1e-7,
                                             1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15};
-constexpr std::size_t kMaxDigits = 3;
+constexpr std::size_t kLoosestDigits = 3;
 constexpr std::size_t kNextDigits = 2;  ///< more than the last trial's
 /// More than the run's. By chance a run may err far less than its tolerance, and its check as much. False
 /// estimates of 900 random chains: 2 at 2, none at 3 (worst 0.44 of the estimate) and 4 (0.35); of 400
@@ -77,7 +77,8 @@ TightestDigits tightest_digits(const System& system, const WorldDef& world) {
     const ElasticDynamics body(system, world);
     const double least = kRoundingOfForces * std::numeric_limits<double>::epsilon() * body.frequency_1_s() /
                          body.inverse_timescale_1_s();
-    for (; tightest.run > kMaxDigits && kTolerance[tightest.check] < least; --tightest.run) --tightest.check;
+    for (; tightest.run > kLoosestDigits && kTolerance[tightest.check] < least; --tightest.run)
+        --tightest.check;
     return tightest;
 }
 
@@ -121,7 +122,7 @@ double stages_of(int order) {
 }
 
 ExactDef loosest_exact() {
-    return {kTolerance[kMaxDigits]};
+    return {kTolerance[kLoosestDigits]};
 }
 
 std::vector<Candidate> exact_trials(const System& system, const WorldDef& world, double tolerance_m,
@@ -135,10 +136,10 @@ std::vector<Candidate> exact_trials(const System& system, const WorldDef& world,
     const bool is_net = !moves_as_chains(system, body);
     const bool is_rigid_net = is_net && body.material.compliance_1_n == 0.0;
     const double wanted = tolerance_m / (is_net ? extent.x + extent.y : largest_length_m(system));
-    std::size_t digits = kMaxDigits;
+    std::size_t digits = kLoosestDigits;
     while (digits < tightest.run && kTolerance[digits] > wanted) ++digits;
     const double looser = body.material.compliance_1_n > 0.0 ? kLooserIfStretching : kLooser;
-    std::size_t first = kMaxDigits;
+    std::size_t first = kLoosestDigits;
     while (first < kMaxImplicitDigits && kTolerance[first] > looser * wanted) ++first;
     const double explicit_1_s = most_implicit_steps_1_s(system, body, world);
     for (std::size_t i = first; i < first + kImplicitTrials && i <= kMaxImplicitDigits; ++i) {
