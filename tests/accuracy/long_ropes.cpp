@@ -409,15 +409,18 @@ LongRope stretching_rope(unsigned number) {
     return made;
 }
 
-/// Prints the ratios of errors to estimates of plans of ropes by implicit steps, and expects none above 1.
-void expect_true_estimates(LongRope (*make)(unsigned), double truth_tolerance, int last_frame) {
+/// Prints the ratios of errors to estimates of plans of ropes by implicit steps, and expects none above 1: of
+/// the ropes with these numbers, and of the first ones.
+void expect_true_estimates(LongRope (*make)(unsigned), double truth_tolerance, int last_frame,
+                           std::vector<unsigned> numbers) {
     const char* const wanted = std::getenv("CORDA_ESTIMATE_SCENES");
     const int count = wanted == nullptr ? 2 : std::atoi(wanted);
+    for (int n = 0; n < count; ++n) numbers.push_back(static_cast<unsigned>(n));
     std::vector<double> ratios;
     int horizons = 0;
     int explicit_ones = 0;
-    for (int n = 0; n < count; ++n) {
-        const LongRope given = make(static_cast<unsigned>(n));
+    for (const unsigned n : numbers) {
+        const LongRope given = make(n);
         const System system = system_of(given.rope);
         const BodyPlan plan = test::plan_of(system, given.world, given.tolerance_m, kFrames, last_frame);
         ASSERT_TRUE(plan.error_estimate_m) << n;
@@ -434,16 +437,19 @@ void expect_true_estimates(LongRope (*make)(unsigned), double truth_tolerance, i
     }
     std::sort(ratios.begin(), ratios.end());
     ASSERT_FALSE(ratios.empty());
-    std::printf("%d ropes, %d explicit, %d horizons, error / estimate at most %.3g, in the median %.3g\n",
-                count, explicit_ones, horizons, ratios.back(), ratios[ratios.size() / 2]);
+    std::printf("%zu ropes, %d explicit, %d horizons, error / estimate at most %.3g, in the median %.3g\n",
+                numbers.size(), explicit_ones, horizons, ratios.back(), ratios[ratios.size() / 2]);
 }
 
 TEST(LongRopes, EstimatesAreTrueOfRandomOnes) {
-    expect_true_estimates(long_rope, 1e-10, 60);
+    expect_true_estimates(long_rope, 1e-10, 60, {});
 }
 
 TEST(LongRopes, EstimatesAreTrueOfThoseThatStretch) {
-    expect_true_estimates(stretching_rope, 1e-8, 60);
+    // Between two pins, 103 and 212 are compressed by vibrations that implicit steps damp, and buckle:
+    // without a second check, the errors of 103 were 6 times the estimate, and its second check alone has 212
+    // err by 3.6 times of it.
+    expect_true_estimates(stretching_rope, 1e-8, 60, {103, 212});
 }
 
 }  // namespace

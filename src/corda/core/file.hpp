@@ -74,7 +74,7 @@ class Descriptor {
 /// for the reader of a pipe. Returns 0 or an errno value.
 [[nodiscard]] int write_all(int descriptor, std::string_view bytes);
 
-/// Throws corda::Error (kIo; kInterrupted for EINTR): "cannot ACTION 'PATH': REASON; HINT", with the reason
+/// Throws corda::Error (exit_code_of_errno(); kInterrupted for EINTR): "cannot ACTION 'PATH': REASON; HINT", with the reason
 /// and the hint for `error_number`. The hint assumes that the file was to be written, unless ACTION is
 /// "read".
 [[noreturn]] void fail_file(std::string_view action, const std::string& path, int error_number);
@@ -85,7 +85,8 @@ enum class FileUse { kRead, kWrite };
 /// Remedy for an errno value; empty if its text is enough.
 [[nodiscard]] std::string_view hint_for_errno(int error_number, FileUse use = FileUse::kWrite);
 
-/// The exit code for an errno value; `otherwise` for one that says nothing about disks, files and memory.
+/// The exit code for an errno value: kIo for a full or failing disk, kTemporary for too many open files or no
+/// memory, `otherwise` for others.
 [[nodiscard]] ExitCode exit_code_of_errno(int error_number, ExitCode otherwise = ExitCode::kIo);
 
 /// Makes a folder and its missing parents. Throws corda::Error (kIo).

@@ -21,12 +21,13 @@ std::string temporary_folder() {
 }
 
 [[noreturn]] void fail_open(std::size_t bytes, int error_number) {
-    throw_error(
-        exit_code_of_errno(error_number),
-        "a motion of {:.3g} GiB has no temporary file in '{}': {}; free some space there, or set TMPDIR "
-        "to a folder that has it",
-        static_cast<double>(bytes) / static_cast<double>(1U << 30U), temporary_folder(),
-        std::strerror(error_number));
+    const ExitCode code = exit_code_of_errno(error_number);
+    throw_error(code, "a motion of {:.3g} GiB has no temporary file in '{}': {}; {}",
+                static_cast<double>(bytes) / static_cast<double>(1U << 30U), temporary_folder(),
+                std::strerror(error_number),
+                code == ExitCode::kTemporary
+                    ? "try again, or raise the limit (ulimit -n)"
+                    : "free some space there, or set TMPDIR to a folder that has it");
 }
 
 Descriptor open_nameless(std::size_t bytes) {

@@ -53,7 +53,7 @@ void fail_libav(ExitCode code, const std::string& what, int status, std::string_
     const std::string_view system_hint = hint_for_errno(AVUNERROR(status));
     const ExitCode exit_code = exit_code_of_errno(AVUNERROR(status), code);
     // What an encoder says in numbers of the system is not about files.
-    const bool is_system = !system_hint.empty() && (code != ExitCode::kEncoder || exit_code == ExitCode::kIo);
+    const bool is_system = !system_hint.empty() && exit_code != ExitCode::kEncoder;
     const std::string_view shown_hint = is_system ? system_hint : hint;
     const std::string log = captured_log();
     std::string message = fmt::format("{}: {}", what, libav_text(status));

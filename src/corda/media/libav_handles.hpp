@@ -88,7 +88,7 @@ class Options : NonCopyable {
 [[nodiscard]] std::string libav_text(int status);
 
 /// Throws corda::Error: "WHAT: <libav's text> (<its log lines>); HINT". A full disk and similar errors
-/// get their own hint and kIo, a lack of memory kTemporary.
+/// get their own hint and kIo, a lack of memory or of files that may be open kTemporary.
 [[noreturn]] void fail_libav(ExitCode code, const std::string& what, int status, std::string_view hint = {});
 
 /// Throws like fail_libav if `status` is negative; returns it otherwise.

@@ -88,6 +88,11 @@ struct TrialKind {
     };
 };
 
+/// True if a run and its check may miss alike what becomes of a start: implicit steps damp vibrations along
+/// links that stretch, which between two pins compress and buckle them. A second check then starts from
+/// particles that are moved to either side, and shows how small movements grow.
+[[nodiscard]] bool may_buckle_unseen(const System& system, const MethodDef& method);
+
 /// Number of checks of a trial: `is_first` as in TrialKind.
 [[nodiscard]] std::size_t check_count(const System& system, const MethodDef& method, bool is_first);
 

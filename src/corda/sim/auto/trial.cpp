@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "corda/core/cancel.hpp"
+#include "corda/sim/auto/candidates.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/exact/string/part.hpp"
 #include "corda/sim/rattle/constraint_solver.hpp"
@@ -381,7 +382,13 @@ CancelScope report_frames(const PlanDef& def, const std::int64_t& frames_done) {
     });
 }
 
+bool may_buckle_unseen(const System& system, const MethodDef& method) {
+    const Body& body = system.bodies.front();
+    return is_implicit(method) && body.material.compliance_1_n > 0.0 && pin_count(system, body) > 1;
+}
+
 std::size_t check_count(const System& system, const MethodDef& method, bool is_first) {
+    if (may_buckle_unseen(system, method)) return 2;
     const bool has_one =
         is_far_from_rounding(system, method) || (is_first && std::holds_alternative<RattleDef>(method));
     return has_one ? 1 : Checks::kMaxCount;

@@ -92,7 +92,7 @@ bool keeps_lengths(const RadauChain& r) {
 }
 
 /// Where derivatives at the end of a step are written.
-struct Slopes {
+struct SlopeArrays {
     double *first, *second;
 };
 
@@ -100,7 +100,7 @@ struct Slopes {
 /// overlap.
 template <bool kStartsAt0>
 CORDA_INLINE void find_slopes_at_end(Index links, double step_s, const RadauChain::Stages& of,
-                                     const double* start, const double* before, Slopes to) {
+                                     const double* start, const double* before, SlopeArrays to) {
     const double per_step = 1.0 / step_s;
     const double* const first = of[0].data();
     const double* const middle = of[1].data();
@@ -112,10 +112,10 @@ CORDA_INLINE void find_slopes_at_end(Index links, double step_s, const RadauChai
         to.second[i] = at.slopes(before[i], per_step).last;
     }
 }
-CORDA_AVX2_CLONES void slopes_of_turns(const RadauChain& r, Slopes to) {
+CORDA_AVX2_CLONES void slopes_of_turns(const RadauChain& r, SlopeArrays to) {
     find_slopes_at_end<true>(r.links, r.step_s, r.turn, nullptr, r.old_omega.data(), to);
 }
-CORDA_AVX2_CLONES void slopes_of_tensions(const RadauChain& r, Slopes to) {
+CORDA_AVX2_CLONES void slopes_of_tensions(const RadauChain& r, SlopeArrays to) {
     find_slopes_at_end<false>(r.links, r.step_s, r.tension, r.old_pull.data(), r.old_pull_rate.data(), to);
 }
 
@@ -191,12 +191,11 @@ double try_step(RadauChain& r) {
     constexpr double kCaution = 0.9;
     constexpr double kMinFactor = 0.125;
     constexpr double kMaxFactor = 8.0;
-    constexpr double kEnough = 1.2;  // steps of one length err alike
+    constexpr double kEnough = 1.2;  // steps stay as long for a smaller gain
     constexpr double kShorter = 0.7;
-    // A step that was not solved is not tried again soon. Where a wave passes, shorter ones err far less than
-    // they may.
+    // After a step that was not solved, steps become longer slowly: those as long would not be solved either.
     constexpr double kOfUnsolved = 0.8;
-    constexpr double kLongerEachStep = 1.02;
+    constexpr double kLongerEachStep = 1.05;
     if (!solve_stages(r) || (r.stretches && !keeps_lengths(r))) {
         r.longest_s = kOfUnsolved * r.step_s;
         return -kShorter;

@@ -39,7 +39,7 @@ struct RadauChain {
     double start_s = 0.0;  ///< of the last step
     double end_s = 0.0;
     double step_s = 0.0;          ///< to try next
-    double longest_s = HUGE_VAL;  ///< to try: longer ones have stages that are not solved
+    double longest_s = HUGE_VAL;  ///< to try, after a longer one that was not solved
     double last_step_s = 0.0;     ///< accepted; 0 before the first
     double last_error = 0.0;      ///< of the accepted step, in parts of the tolerance
     int iterations = 0;

@@ -263,7 +263,7 @@ CORDA_AVX2_CLONES double largest_magnitude(const RadauChain::Array& of) {
     for (Index i = 0; i < fours; ++i) {
         for (Index k = 0; k < 4; ++k) {
             const double value = std::abs(values[4 * i + k]);
-            most[k] = most[k] > value ? most[k] : value;
+            most[k] = value > most[k] ? value : most[k];
         }
     }
     double largest = 0.0;
@@ -300,7 +300,7 @@ double largest_displacement_m(const RadauChain& r, const RadauChain::Array& angl
         end_m = end_m + both_m;
         grow(even_m2, end_m);
     }
-    return std::isnan(even_m2) ? even_m2 : std::sqrt(std::max(odd_m2, even_m2));
+    return std::sqrt(std::max(even_m2, odd_m2));  // the even one is NaN if one is
 }
 double displacement_m(const RadauChain& r, const RadauChain::Array& angle, const RadauChain::Array& tension) {
     return r.stretches ? largest_displacement_m<true>(r, angle, tension)
@@ -351,7 +351,7 @@ CORDA_INLINE RawError raw_error(double step_s, double rate, double curve, const 
 
 /// Right-hand sides of the error estimate, to across[0] and along[0].
 template <bool kStretches>
-CORDA_INLINE void find_errors_of_links(RadauChain& r) {
+CORDA_INLINE void find_right_sides_of_errors(RadauChain& r) {
     const double* const length_m = kStretches ? r.matrix_length.data() : r.length_m.data();
     const double* const matrix_omega = r.matrix_omega.data();
     const double* const matrix_growth = r.matrix_growth.data();
@@ -385,11 +385,11 @@ CORDA_INLINE void find_errors_of_links(RadauChain& r) {
         }
     }
 }
-CORDA_AVX2_CLONES void errors_of_rigid_links(RadauChain& r) {
-    find_errors_of_links<false>(r);
+CORDA_AVX2_CLONES void right_sides_of_rigid_links(RadauChain& r) {
+    find_right_sides_of_errors<false>(r);
 }
-CORDA_AVX2_CLONES void errors_of_stretching_links(RadauChain& r) {
-    find_errors_of_links<true>(r);
+CORDA_AVX2_CLONES void right_sides_of_stretching_links(RadauChain& r) {
+    find_right_sides_of_errors<true>(r);
 }
 
 }  // namespace
@@ -432,9 +432,9 @@ double correct(RadauChain& r) {
 
 double error_m(RadauChain& r) {
     if (r.stretches)
-        errors_of_stretching_links(r);
+        right_sides_of_stretching_links(r);
     else
-        errors_of_rigid_links(r);
+        right_sides_of_rigid_links(r);
     solve_real(r);
     return displacement_m(r, r.across[0], r.along[0]);
 }
