@@ -82,6 +82,19 @@ TEST(Trial, HasThreeChecksWhereRoundingMatters) {
     EXPECT_GT(later.trial.largest_difference_m, first.trial.largest_difference_m);
 }
 
+TEST(Trial, HasASecondCheckWhereImplicitStepsMayMissBuckling) {
+    RopeDef bridge = reference::straight_rope(40, 1.0, 90.0);
+    for (Vec2& point : bridge.points_m) point.y = 0.5 * point.x * (point.x - 1.0);
+    bridge.pinned = {0, 40};
+    const MethodDef run = ExactDef{1e-4, true};
+    const MethodDef check = ExactDef{2.5e-5, true};
+    EXPECT_EQ(outcome_of(bridge, run, check, 1e-3).trial.passes, 2);
+    bridge.material.compliance_1_n = 1e-4;
+    EXPECT_EQ(outcome_of(bridge, run, check, 1e-3).trial.passes, 3);
+    bridge.pinned = {0};
+    EXPECT_EQ(outcome_of(bridge, run, check, 1e-3).trial.passes, 2);
+}
+
 /// A trial of a pendulum that turns back every half second.
 Trial swinging(const Timeline& timeline, double end_s = 0.0) {
     const RopeDef rope = reference::straight_rope(1, 1.0, 60.0);
