@@ -74,9 +74,9 @@ class Descriptor {
 /// for the reader of a pipe. Returns 0 or an errno value.
 [[nodiscard]] int write_all(int descriptor, std::string_view bytes);
 
-/// Throws corda::Error (exit_code_of_errno(); kInterrupted for EINTR): "cannot ACTION 'PATH': REASON; HINT", with the reason
-/// and the hint for `error_number`. The hint assumes that the file was to be written, unless ACTION is
-/// "read".
+/// Throws corda::Error (exit_code_of_errno(); kInterrupted for EINTR): "cannot ACTION 'PATH': REASON; HINT",
+/// with the reason and the hint for `error_number`. The hint assumes that the file was to be written, unless
+/// ACTION is "read".
 [[noreturn]] void fail_file(std::string_view action, const std::string& path, int error_number);
 
 /// Purpose of using a file.
