@@ -64,7 +64,7 @@ constexpr double kCheckStep = 1.0 / 3.0;
 constexpr std::size_t kImplicitTrials = 3;
 constexpr std::size_t kMaxImplicitDigits = 7;
 constexpr double kLooser = 2.0;               ///< errors are 0.05 to 0.4 of the tolerance
-constexpr double kLooserIfStretching = 1.25;  ///< up to 0.8 of it
+constexpr double kLooserIfStretching = 1.25;  ///< up to 0.8 of it as a rule
 constexpr double kImplicitCheck = 0.25;
 constexpr double kMoreThanExplicit = 1.5;  ///< steps that they may take, because their checks are cheaper
 /// Work that an explicit step counts, by implicit ones, and how many more of them each digit takes.

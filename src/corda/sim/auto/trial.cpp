@@ -128,11 +128,11 @@ class Between {
 
 /// Error in metres that vibrations can hide from a trial. Implicit steps damp those that displace particles
 /// by less than a share of a step of 0.002 of the tolerance, in a run and its check; many steps damp larger
-/// ones along links that stretch, which then displace a swing by up to 0.8 of the tolerance. What is not
-/// hidden of that parts the run from its check (330 random ropes err by 0.72 of the estimate at most). If
-/// vibrations of bodies that stretch or bend limit explicit steps, a run and its check damp quick ones alike.
-/// Their amplitude is then below the check's tolerance; otherwise its error estimates would have shortened
-/// the steps.
+/// ones along links that stretch, which then displace a swing by up to 0.8 of the tolerance, and with 1000
+/// links by five times of it. What is not hidden of that parts the run from its check (332 random ropes err
+/// by 0.79 of the estimate at most). If vibrations of bodies that stretch or bend limit explicit steps, a run
+/// and its check damp quick ones alike. Their amplitude is then below the check's tolerance; otherwise its
+/// error estimates would have shortened the steps.
 double hidden_m(const System& system, const Trial& trial) {
     constexpr double kResolved = 0.9;
     constexpr double kOfImplicit = 0.05;
