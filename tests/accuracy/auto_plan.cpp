@@ -201,6 +201,11 @@ TEST(AutoPlan, EndsWithinALimitOfWork) {
     for (std::size_t i = 1; i < 300; ++i)
         bridge.velocity_m_s[i] = {0.0, std::sin(2.0 * std::numbers::pi * static_cast<double>(i) / 300.0)};
     add("bridge that swings", bridge, 120, 1e4, 4);
+    RopeDef hammock = reference::straight_rope(100, 1.0, 90.0);
+    for (Vec2& point : hammock.points_m) point.y = 0.4 * std::abs(point.x - 0.5) - 0.2;
+    hammock.pinned = {0, 100};
+    hammock.material.compliance_1_n = 1e-5;
+    add("bridge that stretches", hammock, 60, 3e4, 12);
     RopeDef light = reference::straight_rope(1000, 1.0, 30.0);
     light.mass_kg.assign(1001, 1e-3);
     light.material.compliance_1_n = 1e-3;

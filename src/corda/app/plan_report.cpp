@@ -70,7 +70,7 @@ void warn_of_horizon(const Console& console, const Film& film) {
         const double tolerance_px = std::get<AutoDef>(film.scene().solver).tolerance_px;
         console.warning(fmt::format(
             "predictability{} ends at {:.6g} s: from there two runs of high precision {}differ by "
-            "more than {:g} px, because {}; later frames show one possible motion",
+            "more than {:.3g} px, because {}; later frames show one possible motion",
             whose, *plan.horizon_s, first->undecided ? "can " : "", tolerance_px, *horizon_reason(*first)));
     }
 }

@@ -56,9 +56,9 @@ void move_by_rounding(System& system, std::size_t number) {
 }
 
 /// Moves the free particles of a rope to either side by this share of its length, or by less: links that
-/// stretch become longer by a share of 2e-8 at most.
+/// stretch become longer by a share of 2e-10 at most.
 void move_across(System& rope, double share) {
-    constexpr double kOfALink = 1e-4;
+    constexpr double kOfALink = 1e-5;
     double by_m = share * links_length_m(rope, rope.bodies.front());
     for (const Bar& link : rope.bars) by_m = std::min(by_m, kOfALink * link.rest_m);
     const auto place = [x_m = rope.x_m, y_m = rope.y_m](std::size_t i) { return Vec2{x_m[i], y_m[i]}; };

@@ -40,9 +40,10 @@ double gain_by_growth_s(const System& system, const Trial& trial, double ran_s, 
     constexpr double kDigitsOfHopeless = 1.2;
     // Than when it exceeded the tolerance: errors of chaotic motions grow in bursts.
     constexpr double kSlower = 4.0;
-    // Bars that come into line, and strings that come taut, part a run from its check in no time.
+    // Bars that come into line, and strings that come taut, part a run from its check in no time. Links that
+    // buckle in a second check may not buckle in explicit steps.
     if (!std::holds_alternative<ExactDef>(trial.method) || has_kinks(system) || trial.diverged ||
-        ran_s >= end_s)
+        ran_s >= end_s || may_buckle_unseen(system, trial.method))
         return HUGE_VAL;
     return kSlower / kDigitsOfHopeless * (ran_s - trial.reached_s);
 }
@@ -136,11 +137,12 @@ void go_back_to(std::size_t number, const System& system, const WorldDef& world,
 }
 
 /// Copies the figures of the run that is drawn into the plan.
-void take_figures(const Trial& chosen, BodyPlan& plan) {
+void take_figures(const System& system, const Trial& chosen, BodyPlan& plan) {
     plan.error_estimate_m = chosen.error_estimate_m;
     if (!chosen.to_the_end) plan.horizon_s = chosen.reached_s;
     plan.undecided = chosen.undecided;
-    plan.unchecked = chosen.unchecked;
+    // Explicit steps might reach farther.
+    plan.unchecked = chosen.unchecked || (!chosen.to_the_end && may_buckle_unseen(system, chosen.method));
 }
 
 /// Runs trials, cheapest first, until one holds to the end or no other is worth its price, and makes the last
@@ -172,7 +174,8 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
             Failure failure{*i, ran_s, gain_by_growth_s(system, failed, ran_s, end_s), run_updates,
                             left_updates - failed.updates};
             // Those with implicit steps say little of others.
-            if (last && is_implicit(candidates[*last].trial.method) == is_implicit(trial.method)) {
+            if (last && is_implicit(candidates[*last].trial.method) == is_implicit(trial.method) &&
+                !may_buckle_unseen(system, trial.method)) {
                 // Frames are a grid, and may be sparse.
                 const double gained_s = std::max(0.0, failed.reached_s - candidates[*last].trial.reached_s) +
                                         def.timeline.step_s();
@@ -207,7 +210,7 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
             go_back_to(static_cast<std::size_t>(farthest - plan.trials.begin()), system, world, def, plan,
                        recording);
     }
-    take_figures(plan.trials.back(), plan);
+    take_figures(system, plan.trials.back(), plan);
     plan.diverges = recording.size() < def.timeline.size();
 }
 
