@@ -65,9 +65,13 @@ void report_methods(const Console& console, const Film& film) {
         const std::string whom =
             is_one ? "" : fmt::format(" for {}", body_name(film.system(), group.bodies.front()));
         for (const Trial& trial : body.trials) {
-            console.result(fmt::format("tried{}: {} against {}: {} steps, differ by {:.2g} m up to {:.6g} s",
-                                       whom, sim::method_text(trial.method), sim::method_text(trial.check),
-                                       trial.steps, trial.largest_difference_m, trial.reached_s));
+            const std::string differ = trial.to_the_end || trial.reached_s > 0.0
+                                           ? fmt::format("differ by {:.2g} m up to {:.6g} s",
+                                                         trial.largest_difference_m, trial.reached_s)
+                                           : "differ too much from the start";
+            console.result(fmt::format("tried{}: {} against {}: {} steps, {}", whom,
+                                       sim::method_text(trial.method), sim::method_text(trial.check),
+                                       trial.steps, differ));
         }
     }
 }

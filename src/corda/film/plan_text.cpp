@@ -377,7 +377,7 @@ std::optional<std::string> error_estimate_text(const Film& film) {
                                              film.scene().video.height_px);
     std::string text =
         fmt::format("{:.2g} px, {:.2g} m", view::rounded_up(largest_px), view::rounded_up(*largest_m));
-    if (plan.horizon_s) text += fmt::format(", up to {:.6g} s", *plan.horizon_s);
+    text += plan.horizon_s ? fmt::format(", up to {:.6g} s", *plan.horizon_s) : ", up to the end";
     if (!without_estimate.empty()) text += ", except " + bodies_text(film.system(), without_estimate);
     return text;
 }
