@@ -11,6 +11,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
 #include "corda/core/csv.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/film/film.hpp"
@@ -311,6 +312,7 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     const bool to_file = !options.output.empty() && !to_stdout;
     if (to_file) check_output(options.output, options.scene.path, options.force, OutputKind::kStream);
     FilmDef def;
+    def.clock_s = now_s;
     def.readings = {.velocities = options.columns.velocities || console.json(),
                     .tensions = options.columns.tensions,
                     .unknown_tensions = options.columns.tensions};

@@ -27,7 +27,7 @@ Film::Film(const Scene& scene, const FilmDef& def) {
         gl::ContextDef gl = gl::ContextDef::parse(def.backend);
         gl.require_gpu = def.require_gpu;
         film::validate(scene, def.stills_s);
-        film::RecordDef record{{}, def.stills_shutter, def.readings, def.on_progress};
+        film::RecordDef record{{}, def.stills_shutter, def.readings, def.on_progress, def.clock_s};
         for (const double time_s : def.stills_s)
             record.times_s.push_back(*film::motion_time_s(scene, time_s));
         auto motion = film::simulate(scene, record);

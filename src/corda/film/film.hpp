@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -31,6 +32,7 @@ struct FilmDef {
     /// Called while the film is made, with the number of times that the simulation has reached, in every
     /// pass. Returning false ends it with kInterrupted.
     OnProgress on_progress;
+    std::function<double()> clock_s;  ///< for stepping_s(), such as that of a steady clock
 };
 
 /// OpenGL driver information.
@@ -109,7 +111,7 @@ class Film {
     [[nodiscard]] Energy energy_of(const State& state) const;
     /// Figures of the whole run, or up to where it diverges.
     [[nodiscard]] const Diagnostics& diagnostics() const;
-    /// Seconds spent in stepping.
+    /// Seconds spent in stepping by FilmDef::clock_s; 0 without it.
     [[nodiscard]] double stepping_s() const;
 
     /// Draws frame `k`, 0 .. last_frame(), as in the video, blurred by video.shutter; or the picture at a

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "corda/core/cancel.hpp"
-#include "corda/core/machine.hpp"
 #include "corda/core/text.hpp"
 #include "corda/film/given.hpp"
 #include "corda/film/live_plots.hpp"
@@ -113,33 +112,33 @@ Plan record_given(Motion& motion, const OnProgress& on_progress) {
 }
 
 /// Runs methods that the scene names for all bodies.
-Plan run_named(Motion& motion, const std::vector<MethodDef>& methods, const OnProgress& on_progress) {
+Plan run_named(Motion& motion, const std::vector<MethodDef>& methods, const RecordDef& def) {
     const Timeline& timeline = *motion.timeline;
     sim::Recording& recording = *motion.recording;
-    const CancelScope progress = report_recorded(motion, on_progress);
+    const CancelScope progress = report_recorded(motion, def.on_progress);
     Simulation run(motion.system, motion.world, methods, timeline.step_s());
     Plan plan;
     for (const MethodDef& method : run.methods()) plan.bodies.emplace_back().method = method;
     plan.simulation_passes = 1;
     while (recording.size() < timeline.size()) {
         check_cancelled();
-        if (recording.advance(run, timeline, now_s) == Status::kDiverged) break;
+        if (recording.advance(run, timeline, def.clock_s) == Status::kDiverged) break;
     }
     return plan;
 }
 
-Plan run(Motion& motion, const Scene& scene, const OnProgress& on_progress) {
-    if (motion.given) return record_given(motion, on_progress);
+Plan run(Motion& motion, const Scene& scene, const RecordDef& def) {
+    if (motion.given) return record_given(motion, def.on_progress);
     const sim::NamedMethods named = named_methods(scene);
     if (const std::vector<MethodDef> methods = if_all_named(named); !methods.empty())
-        return run_named(motion, methods, on_progress);
+        return run_named(motion, methods, def);
     const double tolerance_px = std::get<AutoDef>(scene.solver).tolerance_px;
     const PictureScale scale(scene, motion.system);
     const auto tolerance_m = [&](const MotionBounds& bounds) {
         return tolerance_px / scale.largest_error_px_per_metre(bounds);
     };
     return sim::plan_methods(motion.system, named, scene.world,
-                             {tolerance_m, *motion.timeline, on_progress, now_s, motion.duration_s},
+                             {tolerance_m, *motion.timeline, def.on_progress, def.clock_s, motion.duration_s},
                              *motion.recording);
 }
 
@@ -237,7 +236,7 @@ std::shared_ptr<const Motion> simulate(const Scene& scene, const RecordDef& def)
                                       .with(view::fields_of(scene.style.arrows))
                                       .with({.velocities = scene.style.trail_s > 0.0}));
     }
-    motion->plan = run(*motion, scene, def.on_progress);
+    motion->plan = run(*motion, scene, def);
     const auto all = static_cast<std::int64_t>(motion->timeline->size());
     const CancelScope ending([&] { report_progress(def.on_progress, all, all); });
     const System& system = motion->system;

@@ -22,6 +22,7 @@ struct RecordDef {
     double shutter = 0.0;         ///< exposure of these stills
     StateFields fields;
     OnProgress on_progress;  ///< called with the number of times reached, in every pass, and in long ones
+    std::function<double()> clock_s;  ///< measures the stepping; empty: not measured
 };
 
 /// A scene's motion: the plan, and the states at all times that are drawn. Made by simulate(), and never
