@@ -27,6 +27,16 @@ OnProgress show_progress(const Console& console, const std::string& what) {
     };
 }
 
+/// Shows notes; of many, as ten thousand copies of a rope may have, the first ones.
+void warn_of_notes(const Console& console, const std::vector<std::string>& notes) {
+    constexpr std::size_t kMost = 10;
+    const std::size_t shown = std::min(notes.size(), kMost);
+    for (std::size_t i = 0; i < shown; ++i) console.warning(notes[i]);
+    if (shown < notes.size())
+        console.warning(
+            fmt::format("{} more, which `corda plan --json` lists as notes", notes.size() - shown));
+}
+
 /// Reports the bodies for which `auto` has no error estimate.
 void warn_of_no_estimate(const Console& console, const Film& film) {
     const Plan& plan = film.plan();
@@ -80,7 +90,7 @@ void warn_of_horizon(const Console& console, const Film& film) {
 Film make_film(const Console& console, const Scene& scene, FilmDef def, const std::string& what) {
     def.on_progress = show_progress(console, what);
     Film film(scene, def);
-    for (const std::string& note : film.plan().notes) console.warning(note);
+    warn_of_notes(console, film.plan().notes);
     if (film.scene().given || !std::holds_alternative<AutoDef>(film.scene().solver)) return film;
     if (const auto estimate = error_estimate_text(film)) {
         console.info(fmt::format("auto: {}; error estimate {}, from tighter runs",

@@ -266,6 +266,7 @@ void FrameRenderer::draw_band(const PixelRect& band, const Damage& parts) {
     if (!slices.empty()) read_masks(slices.front(), band, ring_.front());
     for (const PixelRect& part : parts) ground_->write(part.intersected(band), image_);
     for (std::size_t i = 0; i < slices.size(); ++i) {
+        if (i > 0) check_cancelled();  // ten thousand ropes may be as many layers
         // OpenGL draws the next slice while the CPU paints this one.
         if (i + 1 < slices.size()) read_masks(slices[i + 1], band, ring_[(i + 1) % ring_.size()]);
         paint(slices[i], band, ring_[i % ring_.size()]);
