@@ -44,12 +44,11 @@ const Words& words_of(const Cause& cause) {
     return kCauseWords.at(static_cast<std::size_t>(cause.kind));
 }
 
-/// Joins the texts that are not empty.
+}  // namespace
+
 std::string joined(const std::string& first, const std::string& second) {
     return first + (first.empty() || second.empty() ? "" : "; ") + second;
 }
-
-}  // namespace
 
 const char* word_of(Verdict verdict) {
     constexpr std::array kWords{"passed", "different", "missing", "empty", "stale", "invalid"};

@@ -15,13 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The figures and the cause.
-std::string message_of(const Checked& picture) {
-    const std::string figures = figures_text(picture);
-    const std::string cause = cause_text(picture).whole_or_group();
-    return figures + (figures.empty() || cause.empty() ? "" : "; ") + cause;
-}
-
 std::string case_xml(const Checked& picture) {
     std::string xml = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\">\n",
                                   markup_text(picture.scene), markup_text(picture.name), picture.seconds);
@@ -36,7 +29,8 @@ std::string case_xml(const Checked& picture) {
     if (picture.failed())
         xml += fmt::format("      <{} type=\"{}\" message=\"{}\"/>\n",
                            picture.verdict() == Verdict::kInvalid ? "error" : "failure",
-                           word_of(picture.verdict()), markup_text(message_of(picture)));
+                           word_of(picture.verdict()),
+                           markup_text(joined(figures_text(picture), cause_text(picture).whole_or_group())));
     return xml + "    </testcase>\n";
 }
 

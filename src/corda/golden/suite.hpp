@@ -100,6 +100,9 @@ struct CauseText {
 };
 [[nodiscard]] CauseText cause_text(const Checked& picture);
 
+/// Joins the texts that are not empty: "max 3, mean 0.1, share 0.02; pixels differ".
+[[nodiscard]] std::string joined(const std::string& first, const std::string& second);
+
 /// A picture in the results of `corda golden --json`, and in golden.json.
 [[nodiscard]] nlohmann::json picture_json(const Checked& picture);
 /// The keys "max", "mean" and "share" of a difference; null if there are no figures.
