@@ -263,6 +263,22 @@ TEST_F(Messages, WarnOncePerFilmOfPlotsWithoutRoom) {
     }
 }
 
+TEST_F(Messages, ShowTenNotesOfAPlanAndCountTheRest) {
+    const std::string scene = folder_.write("notes.toml", R"(schema = 1
+[world]
+duration = 0.1
+[[rope]]
+hang = { links = 1, length = 1.0 }
+velocity = [0.0, -1.0]
+copies = { count = 12, angle_deg = 1.0 }
+)");
+    const std::string told = run_corda({"plan", scene}).err;
+    EXPECT_THAT(told, HasSubstr("rope 9: "));
+    EXPECT_THAT(told, Not(HasSubstr("rope 10: ")));
+    EXPECT_THAT(told, HasSubstr("2 more, which `corda plan --json` lists as notes"));
+    EXPECT_EQ(nlohmann::json::parse(run_corda({"plan", scene, "--json"}).out)["notes"].size(), 12U);
+}
+
 TEST_F(Messages, PlanNamesCopiesAndLabelsEach) {
     const std::string scene = folder_.write("copies.toml", R"(schema = 1
 [world]
