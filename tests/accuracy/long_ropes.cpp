@@ -446,9 +446,9 @@ TEST(LongRopes, EstimatesAreTrueOfRandomOnes) {
 }
 
 TEST(LongRopes, EstimatesAreTrueOfThoseThatStretch) {
-    // Between two pins, 103 and 212 are compressed by vibrations that implicit steps damp, and buckle:
-    // without a second check, the errors of 103 were 6 times the estimate, and its second check alone has 212
-    // err by 3.6 times of it.
+    // Between two pins, vibrations that implicit steps damp compress 103 and 212, which buckle. With one
+    // check that starts as the run does, 103 errs by 6 times its estimate; with one whose particles start to
+    // either side, 212 errs by 3.6 times its own.
     expect_true_estimates(stretching_rope, 1e-8, 60, {103, 212});
 }
 

@@ -32,7 +32,7 @@ struct FilmDef {
     /// Called while the film is made, with the number of times that the simulation has reached, in every
     /// pass. Returning false ends it with kInterrupted.
     OnProgress on_progress;
-    std::function<double()> clock_s;  ///< for stepping_s(), such as that of a steady clock
+    std::function<double()> clock_s;  ///< seconds of a clock, by which stepping_s() is measured
 };
 
 /// OpenGL driver information.
@@ -111,7 +111,7 @@ class Film {
     [[nodiscard]] Energy energy_of(const State& state) const;
     /// Figures of the whole run, or up to where it diverges.
     [[nodiscard]] const Diagnostics& diagnostics() const;
-    /// Seconds spent in stepping by FilmDef::clock_s; 0 without it.
+    /// Seconds spent in stepping; 0 without FilmDef::clock_s.
     [[nodiscard]] double stepping_s() const;
 
     /// Draws frame `k`, 0 .. last_frame(), as in the video, blurred by video.shutter; or the picture at a
