@@ -191,19 +191,16 @@ py::array_t<Number> to_numpy(Array array) {
     return py::array_t<Number>(shape, numbers, owner);
 }
 
-// Arrays of a film's frames: see the properties of the same names in corda/__init__.py.
-
-/// A label of float64 (see labels.hpp).
-[[nodiscard]] py::array_t<double> label(const PyFilm& film, const char* name);
-[[nodiscard]] py::array_t<double> times(const PyFilm& film);
-[[nodiscard]] py::array_t<std::uint8_t> mask(const PyFilm& film, std::int64_t k);
-using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
-[[nodiscard]] py::array_t<double> to_pixels(const PyFilm& film, const Points& points_m);
+/// Hands the pixels of a picture to numpy, which frees them.
+[[nodiscard]] py::array_t<std::uint8_t> to_numpy(Image image);
 
 /// A message as Python's text. It holds names of files as they are, in any encoding.
 [[nodiscard]] inline py::str text_of(const char* message) {
     return py::reinterpret_steal<py::str>(PyUnicode_DecodeFSDefault(message));
 }
+
+/// Adds the class `Film`.
+void add_film(py::module_& module);
 
 /// Adds what the Python class `Sweep` is made of: the painter of samples, their facts and labels.
 void add_sweep(py::module_& module);

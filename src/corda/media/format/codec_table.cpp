@@ -9,9 +9,9 @@
 #include "corda/media/format/format.hpp"
 #include "corda/media/libav_handles.hpp"
 
-// All that Corda knows of a codec is its row of kCodecs and, for an encoder of libav, its function of
-// options. The bytes of an encoder depend on the definition alone, so it must not choose its number of
-// threads.
+// All that Corda knows of a codec is its row of kCodecs, the endings that name it in kEndings and, for an
+// encoder of libav, its function of options. The bytes of an encoder depend on the definition alone, so it
+// must not choose its number of threads.
 
 namespace corda::media {
 namespace {
@@ -204,10 +204,28 @@ constexpr std::array kCodecs{
           .tolerance = kGifTolerance},
 };
 
+constexpr std::array kEndings{
+    Ending{".mp4",
+           "MP4",
+           FileKind::kVideo,
+           "mp4",
+           {"libx264", "libsvtav1", "libx265", "libaom-av1", "h264_nvenc"}},
+    Ending{".webm", "WebM", FileKind::kVideo, "webm", {"libvpx-vp9", "libsvtav1", "libaom-av1"}},
+    Ending{".mov", "QuickTime", FileKind::kVideo, "mov", {"prores_ks"}},
+    Ending{".mkv", "Matroska", FileKind::kVideo, "matroska", {"ffv1"}},
+    Ending{".gif", "GIF", FileKind::kAnimation, "gif", {"gif"}},
+    Ending{"%04d.png", "PNG pictures", FileKind::kPictures, "", {"png"}},
+    Ending{"-", "YUV4MPEG2", FileKind::kStream, "", {"rawvideo"}},
+};
+
 }  // namespace
 
 std::span<const Codec> codecs() {
     return kCodecs;
+}
+
+std::span<const Ending> endings() {
+    return kEndings;
 }
 
 }  // namespace corda::media

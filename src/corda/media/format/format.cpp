@@ -15,20 +15,6 @@
 namespace corda::media {
 namespace {
 
-constexpr std::array kEndings{
-    Ending{".mp4",
-           "MP4",
-           FileKind::kVideo,
-           "mp4",
-           {"libx264", "libsvtav1", "libx265", "libaom-av1", "h264_nvenc"}},
-    Ending{".webm", "WebM", FileKind::kVideo, "webm", {"libvpx-vp9", "libsvtav1", "libaom-av1"}},
-    Ending{".mov", "QuickTime", FileKind::kVideo, "mov", {"prores_ks"}},
-    Ending{".mkv", "Matroska", FileKind::kVideo, "matroska", {"ffv1"}},
-    Ending{".gif", "GIF", FileKind::kAnimation, "gif", {"gif"}},
-    Ending{"%04d.png", "PNG pictures", FileKind::kPictures, "", {"png"}},
-    Ending{"-", "YUV4MPEG2", FileKind::kStream, "", {"rawvideo"}},
-};
-
 std::vector<std::string_view> names_of(const Ending& ending) {
     std::vector<std::string_view> names;
     for (const char* const name : ending.codecs)
@@ -262,10 +248,6 @@ const Codec* find_codec(std::string_view name) {
     const auto row = std::ranges::find_if(
         codecs(), [name](const Codec& codec) { return name == codec.name || name == codec.short_name; });
     return row == codecs().end() ? nullptr : &*row;
-}
-
-std::span<const Ending> endings() {
-    return kEndings;
 }
 
 const Ending& find_ending(std::string_view path) {

@@ -14,7 +14,7 @@ import zipfile
 
 import numpy as np
 
-from . import _error
+from ._arguments import make_error
 
 _DATE = (1980, 1, 1, 0, 0, 0)  # the first that a .zip can hold
 _MAX_FILE_BYTES = 1 << 30
@@ -22,7 +22,7 @@ _MAX_FILE_BYTES = 1 << 30
 
 def io_error(action, path, error):
     """The Error (code 6) of an OSError."""
-    return _error(f"cannot {action} '{path}': {error.strerror or error}", 6)
+    return make_error(f"cannot {action} '{path}': {error.strerror or error}", 6)
 
 
 def npz_bytes(arrays):
@@ -65,7 +65,7 @@ def plain_size(path):
 
 def refuse_unusual(path):
     if os.path.lexists(path) and plain_size(path) is None:
-        raise _error(f"'{path}' is no ordinary file; move it away, or choose another folder", 6)
+        raise make_error(f"'{path}' is no ordinary file; move it away, or choose another folder", 6)
 
 
 def read_plain(path):

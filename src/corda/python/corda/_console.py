@@ -9,7 +9,8 @@ import signal
 import sys
 import time
 
-from . import Error, _error
+from ._arguments import make_error
+from ._corda import Error
 
 _SECONDS_BETWEEN_BARS = 0.1
 _SECONDS_BETWEEN_LINES = 2.0
@@ -68,7 +69,7 @@ def print_result(text):
     except OSError as error:
         if sys.stdout is not None:
             _discard(sys.stdout)
-        raise _error(f"writing to standard output: {error.strerror}", 6) from None
+        raise make_error(f"writing to standard output: {error.strerror}", 6) from None
 
 
 def _print_message(text, end="\n"):

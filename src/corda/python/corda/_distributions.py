@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 
-from . import _error
+from ._arguments import make_error
 
 _MAX_TRIES = 1000
 _LEAST_NORMAL = sys.float_info.min
@@ -100,5 +100,5 @@ def draw(distribution, component, random, key):
         value = SHAPES[distribution.shape][2](*ends, random)
         if distribution.min[component] <= value <= distribution.max[component]:
             return value
-    raise _error(f'vary."{key}": of {_MAX_TRIES} numbers of the normal distribution none was within its bounds; give wider '
-                 "bounds", 3)
+    raise make_error(f'vary."{key}": of {_MAX_TRIES} numbers of the normal distribution none was within its bounds; give wider '
+                     "bounds", 3)

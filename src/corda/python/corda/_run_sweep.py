@@ -12,8 +12,9 @@ import signal
 import threading
 import time
 
-from . import _corda, _error, _shards
+from . import _corda, _shards
 from ._archive import read_plain, sha256_of
+from ._arguments import make_error
 from ._corda import Error
 from ._sample import make_sample
 
@@ -120,7 +121,7 @@ def _packed_by_processes(definition, gl, numbers, count, jobs):
         pool.shutdown()
     except concurrent.futures.BrokenExecutor:
         time.sleep(_SIGNALS_APART_S)  # a signal to this process, too, is raised here and tells more
-        raise _error("a process that makes samples was killed; a smaller scene or picture, or fewer jobs, may help "
+        raise make_error("a process that makes samples was killed; a smaller scene or picture, or fewer jobs, may help "
                                "if memory ended", 75) from None
     finally:
         for process in set(multiprocessing.active_children()) - others:

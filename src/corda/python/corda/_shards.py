@@ -7,7 +7,7 @@ import json
 import os
 import re
 
-from . import _error
+from ._arguments import make_error
 from ._archive import OutputFile, TarWriter, csv_text, io_error, npz_bytes, plain_size, read_plain, save_file
 from ._corda import __version__
 from ._parameters import hash_text, identity_of
@@ -108,12 +108,12 @@ def _require_same(sweep, origin, path):
             changes.append(f"{key} has other values" if is_long else f"{key} is {now} and was {before}")
     if changes:
         more = f", and {len(changes) - _MAX_NAMED} more" if len(changes) > _MAX_NAMED else ""
-        raise _error(f"'{path}' is of another sweep: {', '.join(changes[:_MAX_NAMED])}{more}; choose another folder, move it "
+        raise make_error(f"'{path}' is of another sweep: {', '.join(changes[:_MAX_NAMED])}{more}; choose another folder, move it "
                        "away, or replace all shards (--force)")
 
 
 def _fail_larger(path):
-    raise _error(f"'{path}' is of a sweep of more samples; move it away, or replace all shards (--force)")
+    raise make_error(f"'{path}' is of a sweep of more samples; move it away, or replace all shards (--force)")
 
 
 def _manifest_origin(folder):
@@ -123,7 +123,7 @@ def _manifest_origin(folder):
         return None
     origin = _origin_of(_read_json(path))
     if origin is None:
-        raise _error(f"'{path}' is no manifest of a sweep; move it away, or choose another folder", 6)
+        raise make_error(f"'{path}' is no manifest of a sweep; move it away, or choose another folder", 6)
     return origin
 
 
@@ -141,7 +141,7 @@ def open_folder(sweep, folder, force):
         if origin is None and name.endswith(".json"):
             origin = _origin_of(_read_json(os.path.join(folder, name)))
     if origin is None and files:
-        raise _error(f"'{os.path.join(folder, files[0])}' is there, and no manifest of a sweep; move it away, or choose "
+        raise make_error(f"'{os.path.join(folder, files[0])}' is there, and no manifest of a sweep; move it away, or choose "
                        "another folder", 6)
     if not has_manifest:
         with OutputFile(manifest_path(folder)) as file:

@@ -7,8 +7,9 @@ import re
 
 import numpy as np
 
-from . import _corda, _error, _parameters, _theory
+from . import _corda, _parameters, _theory
 from ._archive import csv_text, save_file
+from ._arguments import make_error
 from ._corda import Error
 from ._distributions import Distribution
 from ._motion import first_turn, spread
@@ -23,7 +24,7 @@ try:
 
     from .plot import _COLORS, _plain
 except ImportError:
-    raise _error("--plot and --sheet need matplotlib, which is not installed for this Python; install the package "
+    raise make_error("--plot and --sheet need matplotlib, which is not installed for this Python; install the package "
                    "python3-matplotlib (apt-get install python3-matplotlib, or pip install matplotlib)") from None
 
 _UNITS = {"_m_s": "m/s", "_s": "s", "_deg": "°", "_n": "N", "_px": "px", "_m": "m"}
@@ -69,7 +70,7 @@ def find_columns(sweep, text):
     """The columns of "Y:X". Raises Error (code 2)."""
     y, colon, x = text.partition(":")
     if not colon:
-        raise _error(f"--plot {short_text(text)}: is not Y:X, such as period_s:angle_max_deg")
+        raise make_error(f"--plot {short_text(text)}: is not Y:X, such as period_s:angle_max_deg")
     return _find_column(sweep, y), _find_column(sweep, x)
 
 
@@ -79,7 +80,7 @@ def _find_column(sweep, name):
     if len(found) == 1:
         return found[0]
     problem = "several columns are named" if found else "there is no column"
-    raise _error(f'--plot: {problem} "{short_text(name)}"; give Y:X, two of {", ".join([*sweep.summary, *sweep.vary])}')
+    raise make_error(f'--plot: {problem} "{short_text(name)}"; give Y:X, two of {", ".join([*sweep.summary, *sweep.vary])}')
 
 
 def _file_name(sweep, column):
@@ -136,7 +137,7 @@ def _read_points(sweep, folder, y, x):
         theory = period_theory(sweep, parameters, angle_deg) if y.name == "period_s" and is_number(angle_deg) else None
         points.append({"key": _parameters.key_of(number), "series": name, "x": values[0], "y": values[1], "theory": theory})
     if not points:
-        raise _error(f"--plot {y.name}:{x.name}: no finished sample in '{folder}' has both figures (a period needs three "
+        raise make_error(f"--plot {y.name}:{x.name}: no finished sample in '{folder}' has both figures (a period needs three "
                        "passes below the only pin, and successive ones that agree)")
     others_vary = [key for key, values in sweep.vary.items()
                    if key not in keys and not (isinstance(values, list) and len(values) == 1)]

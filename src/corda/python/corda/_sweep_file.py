@@ -10,7 +10,8 @@ import re
 import sys
 import tomllib
 
-from . import _corda, _error, _path
+from . import _corda
+from ._arguments import make_error, path_bytes
 from ._corda import Error
 from ._distributions import SHAPES, Distribution, rounded
 
@@ -227,7 +228,7 @@ class _Reader:
     def raise_if_any(self):
         """Raises all problems, one per line in the order of the file."""
         if self._problems:
-            raise _error("\n".join(f"{self._sweep.source}:{line}:{column}: {key}: {problem}" for key, (line, column, problem) in
+            raise make_error("\n".join(f"{self._sweep.source}:{line}:{column}: {key}: {problem}" for key, (line, column, problem) in
                                    sorted(self._problems.items(), key=lambda item: item[1])), 3)
 
     def place(self, *path):
@@ -448,21 +449,21 @@ def _read_text(path, what):
             with open(path, "rb") as file:
                 data = file.read(_MAX_FILE_BYTES + 1)
     except OSError as error:
-        raise _error(f"{shown}: cannot read the {what} file: {error.strerror}; give the path of a TOML file", 6) from None
+        raise make_error(f"{shown}: cannot read the {what} file: {error.strerror}; give the path of a TOML file", 6) from None
     if len(data) > _MAX_FILE_BYTES:
-        raise _error(f"{shown}: more than {_MAX_FILE_BYTES} bytes, the limit; give a shorter file", 3)
+        raise make_error(f"{shown}: more than {_MAX_FILE_BYTES} bytes, the limit; give a shorter file", 3)
     try:
         return data.decode()
     except UnicodeDecodeError as error:
         line = data[: error.start].count(b"\n") + 1
-        raise _error(f"{shown}:{line}: the {what} file is no UTF-8 text; save it as UTF-8", 3) from None
+        raise make_error(f"{shown}:{line}: the {what} file is no UTF-8 text; save it as UTF-8", 3) from None
 
 
 def _parse(text, source):
     try:
         return tomllib.loads(text)
     except RecursionError:
-        raise _error(f"{source}: lists or tables are nested too deeply; no sweep needs that", 3) from None
+        raise make_error(f"{source}: lists or tables are nested too deeply; no sweep needs that", 3) from None
     except ValueError as error:  # TOMLDecodeError, and integers of thousands of digits
         message = str(error)
         place = re.fullmatch(r"(.*) \(at line (\d+), column (\d+)\)", message, re.DOTALL)
@@ -470,9 +471,9 @@ def _parse(text, source):
             line = text.split("\n")[int(place[2]) - 1]
             key = re.match(r"\s*([\w-]+(?:\[\d+\]|\.[\w-]+)*\[\d+\][\w.\[\]-]*)\s*=", line)
             problem = f'a key with an index needs quotes; write "{short_text(key[1])}" = ...' if key else place[1]
-            raise _error(f"{source}:{place[2]}:{place[3]}: {problem}", 3) from None
+            raise make_error(f"{source}:{place[2]}:{place[3]}: {problem}", 3) from None
         end = text.rstrip("\n").count("\n") + 1
-        raise _error(f"{source}:{end}: {message.removesuffix(' (at end of document)')}", 3) from None
+        raise make_error(f"{source}:{end}: {message.removesuffix(' (at end of document)')}", 3) from None
 
 
 def load(path):
@@ -481,17 +482,17 @@ def load(path):
     Raises Error: code 6 if a file cannot be read; 3 with all that is wrong in the sweep file, one problem per line with file, line,
     column and key, or with what is wrong in the scene.
     """
-    path = os.fsdecode(_path(path))
+    path = os.fsdecode(path_bytes(path))
     sweep = Definition(source="stdin" if path == "-" else path)
     text = _read_text(path, "sweep").removeprefix("\ufeff")  # the mark of UTF-8 that some editors write
     reader = _Reader(_parse(text, sweep.source), text, sweep)
     reader.read()
     sweep.scene_source = os.path.join("" if path == "-" else os.path.dirname(path), sweep.scene_name)
     try:
-        _path(sweep.scene_source)
+        path_bytes(sweep.scene_source)
         sweep.scene_toml = _read_text(sweep.scene_source, "scene")
     except Error as error:
-        raise _error(f"{reader.place('scene')}: scene: {error}", error.code) from None
+        raise make_error(f"{reader.place('scene')}: scene: {error}", error.code) from None
     _corda.check_scene(sweep.scene_toml, os.fsencode(sweep.scene_source))
     reader.check_scene_keys()
     return sweep

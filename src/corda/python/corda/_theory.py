@@ -80,9 +80,9 @@ def weights_below(motion):
 
 
 def period_of(motion, angle_deg, body=None):
-    """The Period of a body, by default the first, that swings through `angle_deg`: of a point pendulum, also of a rope whose end has all but a
-    hundredth of its mass, whose period is shorter by less than 0.1 %; of a rigid rod, which bars to more than the next
-    particle make of a rope; or of a hanging rope at small angles. The links are equal. None for other scenes."""
+    """The Period of a body, by default the first, that swings through `angle_deg`: of a point pendulum, also of a rope whose
+    end has all but a hundredth of its mass, whose period is shorter by less than 0.1 %; of a rigid rod, which bars to more than
+    the next particle make of a rope; or of a hanging rope at small angles. The links are equal. None for other scenes."""
     body = motion.bodies[0] if body is None else body
     if not hangs_plainly(motion, body) or not angle_deg < 180.0:
         return None

@@ -19,7 +19,8 @@ import math as _math
 
 import numpy as _np
 
-from . import _corda, _error
+from . import _corda
+from ._arguments import make_error as _make_error
 from ._motion import motion_of as _motion_of
 from ._theory import hangs_alone as _hangs_alone, period_of as _period_of, weights_below as _weights_below
 
@@ -168,7 +169,7 @@ def _curves(motion, tracks, curve_of):
 
 def _moving(motion, what):
     if not motion.tracks:
-        raise _error(f"corda.plot.{what}: nothing moves, because all particles are pinned")
+        raise _make_error(f"corda.plot.{what}: nothing moves, because all particles are pinned")
     return motion.tracks
 
 
@@ -181,8 +182,8 @@ def angle(film, ax=None):
     motion = _motion_of(film)
     tracks = [track for track in motion.tracks if track.turns]
     if not tracks:
-        raise _error("corda.plot.angle: no rope of the scene turns about one pin and keeps away from it; use corda.plot.phase "
-                     "or corda.plot.tip")
+        raise _make_error("corda.plot.angle: no rope of the scene turns about one pin and keeps away from it; use corda.plot.phase "
+                          "or corda.plot.tip")
 
     def over_time(track):
         return _np.stack([track.curve(track.times, _np.ones_like(track.times)),
@@ -252,8 +253,8 @@ def tension(film, ax=None):
     tracks = [track for track in _moving(motion, "tension")
               if not _np.all(_np.isnan(motion.largest(motion.tensions, track.body)[0]))]
     if not tracks:
-        raise _error("corda.plot.tension: no tension is known; use method exact or rattle, and bars that do not depend on each "
-                     "other")
+        raise _make_error("corda.plot.tension: no tension is known; use method exact or rattle, and bars that do not depend on "
+                          "each other")
     curves = _curves(motion, tracks, lambda track: _np.stack(
         [motion.times, motion.largest(motion.tensions, track.body)[0]], axis=1))
     plot, _, unit = _draw(film, ax, curves, ("t", "s"), ("largest tension", "N"))
@@ -269,7 +270,7 @@ def tension_along(film, ax=None):
     largest = motion.tension
     body = None if largest is None else motion.bodies[largest.body]
     if body is None or body.is_net or len(body.rest_m) < 3:
-        raise _error("corda.plot.tension_along: the largest tension is not in a rope of three links or more")
+        raise _make_error("corda.plot.tension_along: the largest tension is not in a rope of three links or more")
     middles = _np.cumsum(body.rest_m) - 0.5 * body.rest_m
     frame = int(_np.flatnonzero(motion.times == largest.time)[0])
     curve = _np.stack([middles, motion.tensions[frame, body.links]], axis=1)
@@ -293,7 +294,8 @@ def divergence(film, ax=None):
     the motion magnifies a difference at a constant rate. Equal positions are drawn as the smallest distance."""
     motion = _motion_of(film)
     if len(motion.tracks) < 2:
-        raise _error("corda.plot.divergence: the scene has one body that moves, or none; give it two, such as copies of a rope")
+        raise _make_error("corda.plot.divergence: the scene has one body that moves, or none; give it two, such as copies of a "
+                          "rope")
     first, second = motion.tracks[:2]
     apart = _np.hypot(*(first.position - second.position).T)
     size = _np.ptp(motion.positions[0], axis=0).max()

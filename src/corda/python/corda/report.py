@@ -14,8 +14,9 @@ import time
 
 import numpy as np
 
-from . import Error, Film, __version__, _console, _corda, _error, _path
+from . import Error, Film, __version__, _console, _corda
 from ._archive import csv_text, save_file
+from ._arguments import make_error, path_bytes
 from ._motion import motion_of
 
 #: Widths of figures in print, a column and a page of a journal, and the resolution of PNGs in pixels per inch.
@@ -54,11 +55,11 @@ def _film(options):
     """The film of the scene; a bad --fps or --duration is a wrong command line, and not a bad scene."""
     for name in ("output", "scene", "at", "frame", "fps", "duration", "backend"):
         if getattr(options, name) == "":
-            raise _error(f"--{name}: the value is empty; give one, or leave it out")
+            raise make_error(f"--{name}: the value is empty; give one, or leave it out")
     own = [f"{key}={value}" for key, value in (("video.fps", options.fps), ("world.duration", options.duration)) if value]
     is_path = options.scene != "-"
     if not is_path and sys.stdin is None:
-        raise _error("standard input is closed; give a scene file", 6)
+        raise make_error("standard input is closed; give a scene file", 6)
     text = b"" if is_path else sys.stdin.buffer.read()
     source = os.fsencode(options.scene) if is_path else b"stdin"
     gl = (options.backend or os.environ.get("CORDA_BACKEND") or "auto", options.require_gpu)
@@ -85,25 +86,25 @@ def _frames(word, count):
         first = int(first) if first or not colon else 0
         end = (int(end) if end else count) if colon else first + 1
     except ValueError:
-        raise _error(f"--frame {word}: is neither a frame number nor a range FIRST:END of them") from None
+        raise make_error(f"--frame {word}: is neither a frame number nor a range FIRST:END of them") from None
     if not 0 <= first < end <= count:
-        raise _error(f"--frame {word}: the frames are 0 to {count - 1}, all of them the range 0:{count}; world.duration sets the "
-                     "end")
+        raise make_error(f"--frame {word}: the frames are 0 to {count - 1}, all of them the range 0:{count}; world.duration sets "
+                         "the end")
     return range(first, end)
 
 
 def _asked_times(options, film, facts):
     """The times of --at or --frame in s, increasing."""
     if not 1.0 <= options.font_pt <= 18.0:
-        raise _error(f"--font-pt {options.font_pt:g}: takes 1 .. 18 points")
+        raise make_error(f"--font-pt {options.font_pt:g}: takes 1 .. 18 points")
     try:
         times = [float(word) for word in options.at.split(",")] if options.at else []
     except ValueError:
-        raise _error(f"--at {options.at}: takes times in seconds, such as 0,0.5,1.25") from None
+        raise make_error(f"--at {options.at}: takes times in seconds, such as 0,0.5,1.25") from None
     duration, rate = facts["duration"], fractions.Fraction(facts["rate"])
     for time_s in times:
         if not 0.0 <= time_s <= duration:
-            raise _error(f"--at {time_s:g}: is not within 0 .. {duration:g} s; world.duration sets the end")
+            raise make_error(f"--at {time_s:g}: is not within 0 .. {duration:g} s; world.duration sets the end")
     for word in options.frame.split(",") if options.frame else []:
         times += [float(k / rate) for k in _frames(word, len(film))]
     return sorted(set(times))
@@ -118,15 +119,15 @@ class Folder:
         try:
             there = next(part for part in (self.path.absolute(), *self.path.absolute().parents) if os.path.lexists(part))
             if not there.is_dir():
-                raise _error(f"{there}: exists and is not a folder; choose another name", 6)
+                raise make_error(f"{there}: exists and is not a folder; choose another name", 6)
             if not os.access(there, os.W_OK | os.X_OK):
-                raise _error(f"{there}: this folder cannot be written to; choose another one", 6)
+                raise make_error(f"{there}: this folder cannot be written to; choose another one", 6)
             if not dry_run:
                 self.path.mkdir(parents=True, exist_ok=True)
             if not force and self.path.is_dir() and any(self.path.iterdir()):
-                raise _error(f"{path}: is not empty; give --force to replace files of the same names", 6)
+                raise make_error(f"{path}: is not empty; give --force to replace files of the same names", 6)
         except OSError as error:
-            raise _error(f"{error.filename}: cannot be written: {error.strerror}; choose another folder", 6) from None
+            raise make_error(f"{error.filename}: cannot be written: {error.strerror}; choose another folder", 6) from None
 
     def write(self, name, data):
         """Writes bytes or a text as the file of that name."""
@@ -135,7 +136,7 @@ class Folder:
             if path.is_symlink():
                 path.unlink()  # --force replaces the link itself
         except OSError as error:
-            raise _error(f"{path}: cannot be replaced: {error.strerror}", 6) from None
+            raise make_error(f"{path}: cannot be replaced: {error.strerror}", 6) from None
         save_file(path, data.encode("utf-8", "surrogateescape") if isinstance(data, str) else data)
         self.note(name)
 
@@ -239,7 +240,7 @@ def _write_figure(figure, film, folder, options, svgs):
             if figure.plot:
                 folder.write(name, files[ending])
             else:
-                film._film.save_report_still(_path(folder.path / name), figure.times, width_mm, options.font_pt, options.force)
+                film._film.save_report_still(path_bytes(folder.path / name), figure.times, width_mm, options.font_pt, options.force)
                 folder.note(name)
             if ending == "svg" and width_mm == shown_mm:
                 svgs[figure.id] = (folder.path / name).read_bytes()
@@ -323,7 +324,7 @@ def _write_report(film, asked, options, console, folder):
         raise
     progress.end()
     if motion.failure is not None:
-        raise _error(_with_files(motion.failure, folder), 8)
+        raise make_error(_with_files(motion.failure, folder), 8)
     return motion
 
 
@@ -341,7 +342,7 @@ def _report(console, options):
     try:
         from . import plot as _  # noqa: F401
     except ImportError as error:
-        raise _error(str(error)) from None
+        raise make_error(str(error)) from None
     film = _film(options)
     facts = film._film.facts()
     asked = _asked_times(options, film, facts)

@@ -10,7 +10,8 @@ import os
 import time
 import warnings
 
-from . import _console, _corda, _error, _gl, _parameters, _sample, _sweep_file
+from . import _console, _corda, _parameters, _sample, _sweep_file
+from ._arguments import gl_options, make_error
 
 __all__ = ["Sweep"]
 
@@ -21,7 +22,7 @@ _PLAIN_SCENE = "schema = 1\n[[rope]]\nhang = { links = 1, length = 1.0 }\n"
 
 def _known_gl(backend, require_gpu):
     """How to reach OpenGL. Raises Error (code 2) for an unknown backend, which would refuse every sample."""
-    gl = _gl(backend, require_gpu)
+    gl = gl_options(backend, require_gpu)
     _corda.Film(_PLAIN_SCENE, b"text", False, [], *gl, None)
     return gl
 
@@ -67,7 +68,7 @@ class Sweep:
             raise IndexError(f"there is no sample {index}: the sweep has {len(self)}") from None
         sample = self._make(number)
         if sample.failure:
-            raise _error(self._failure_text(sample), sample.failure[0])
+            raise make_error(self._failure_text(sample), sample.failure[0])
         return _dictionary(sample)
 
     def __iter__(self):
@@ -85,14 +86,14 @@ class Sweep:
         except TypeError:
             raise TypeError(f"shard: takes two integers, index and count, not {index!r} and {count!r}") from None
         if not 0 <= index < count:
-            raise _error(f"shard: takes index and count with 0 <= index < count, not {index} and {count}")
+            raise make_error(f"shard: takes index and count with 0 <= index < count, not {index} and {count}")
         return self._of(_shard_numbers(self._numbers, self._definition.shard_samples, index, count))
 
     def split(self, name):
         """The samples of a split of the file: a Sweep. Goes through all numbers once, without making a sample."""
         splits = self._definition.splits
         if name not in splits:
-            raise _error(f"split: {name!r} is no split of {self._definition.source}; " +
+            raise make_error(f"split: {name!r} is no split of {self._definition.source}; " +
                          (f"it has {', '.join(splits)}" if splits else "give it a table [split]"))
         return self._of(tuple(number for number in self._numbers if _parameters.split_of(self._definition, number) == name))
 
@@ -246,7 +247,7 @@ def _tell(console, definition, result, wall_s):
                      f"{result.samples_made / wall_s:.1f} per second")
     first = f"the first, {result.first_failure}, by {definition.source}"
     if result.is_complete and result.failed == definition.samples:
-        raise _error(f"all samples were refused; {first}", 3)
+        raise make_error(f"all samples were refused; {first}", 3)
     if result.failed:
         console.warning(f'{counted(result.failed, "sample")} refused, see column "failure" of metadata.csv; {first}')
     if not result.is_complete:

@@ -20,7 +20,9 @@ import subprocess as _subprocess
 import sys as _sys
 import tomllib as _tomllib
 
-from . import _corda, _error, _limit, _path, _pixels
+from . import _corda
+from ._arguments import make_error as _make_error, path_bytes as _path_bytes, to_float as _to_float
+from ._pictures import pixels_of as _pixels_of
 
 __all__ = ["assert_golden", "assert_matches_golden", "golden_scenes"]
 
@@ -45,8 +47,9 @@ def assert_matches_golden(picture, name, *, folder=None, max=None, mean=None, sh
     """
     __tracebackhide__ = True  # pytest shows the line of the test
     given = {"max": max, "mean": mean, "share": share}
-    limits = tuple(_limit(value, key) for key, value in given.items())
-    matches, written, message = _corda.check_golden(_pixels(picture), _path(name, "name"), _path(folder or "", "folder"), limits,
+    limits = tuple(None if value is None else _to_float(value, key) for key, value in given.items())
+    matches, written, message = _corda.check_golden(_pixels_of(picture), _path_bytes(name, "name"),
+                                                    _path_bytes(folder or "", "folder"), limits,
                                                     None if film is None else film._film, _rerun())
     if written:
         print(message, file=_sys.stderr)
@@ -74,7 +77,7 @@ def assert_golden(scene, references, *options):
     try:
         ended = _subprocess.run(command, capture_output=True, text=True)
     except FileNotFoundError:
-        raise _error("the program corda is in no folder of PATH; add its own (build/release of the source)", 6) from None
+        raise _make_error("the program corda is in no folder of PATH; add its own (build/release of the source)", 6) from None
     if ended.returncode != 0:
         raise AssertionError(f"{ended.stdout}{ended.stderr}repeat: {_shlex.join(command)}\n"
                              f"accept: {_shlex.join([*command, '--update'])}, or --review to see them first")
