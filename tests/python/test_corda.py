@@ -437,8 +437,9 @@ def test_forked_workers_draw_after_their_parent_has_drawn(tmp_path):
             sys.exit(0 if grandchild(3) else 1)
         print(os.waitpid(child, 0)[1])
     """)
-    done = subprocess.run([sys.executable, "-c", program, SCENE, str(tmp_path)], capture_output=True,
-                          text=True, timeout=300)
+    # A child that stores a shader, because the cache has none, would wait for a thread of its parent.
+    done = subprocess.run([sys.executable, "-c", program, SCENE, str(tmp_path)], capture_output=True, text=True, timeout=300,
+                          env={**os.environ, "XDG_CACHE_HOME": str(tmp_path / "cache")})
     assert done.stdout.split("\n")[:5] == 4 * ["[True, True]"] + ["0"], done.stderr
 
 

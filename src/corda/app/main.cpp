@@ -18,6 +18,7 @@
 #include "corda/core/output_file.hpp"
 #include "corda/core/problem_json.hpp"
 #include "corda/core/removed.hpp"
+#include "corda/gl/driver.hpp"
 #include "corda/scene/schema.hpp"
 #include "interrupt.hpp"
 
@@ -214,9 +215,11 @@ int run(int argc, char** argv) {
     return act(Console(console_def), action, fmt::format("'{}'", fmt::join(argv + 1, argv + argc, " ")));
 }
 
-/// SVT-AV1 prints its settings unless told otherwise; a wish of the user stays.
-void keep_encoders_quiet() {
+/// Settings of libraries, where the user has none. SVT-AV1 would print its own. The next run finds the
+/// shaders that this one has compiled: the program does not fork.
+void set_up_libraries() {
     setenv("SVT_LOG", "1", 0);
+    setenv(gl::kNoShaderCache, "false", 0);
 }
 
 }  // namespace
@@ -225,7 +228,7 @@ void keep_encoders_quiet() {
 int main(int argc, char** argv) {
     try {
         corda::keep_memory();
-        corda::app::keep_encoders_quiet();
+        corda::app::set_up_libraries();
         corda::app::keep_standard_streams();
         return corda::app::run(argc, argv);
     } catch (const std::bad_alloc&) {

@@ -85,7 +85,11 @@ bool has_libraries() {
 
 void prepare_driver() {
     // Only once, because other threads may read the environment.
-    static const int is_set = setenv("LP_NUM_THREADS", "0", 0);
+    static const bool is_set = [] {
+        setenv("LP_NUM_THREADS", "0", 0);
+        setenv(kNoShaderCache, "true", 0);
+        return true;
+    }();
     static_cast<void>(is_set);
     if (!has_libraries()) throw Error(ExitCode::kNoGl, "no usable OpenGL: " + missing_library());
     settle_glx();

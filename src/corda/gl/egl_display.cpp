@@ -137,10 +137,13 @@ bool is_of_host(EGLDisplay display) {
            eglQueryString(display, EGL_VERSION) != nullptr;
 }
 
-/// True if llvmpipe draws without threads, which a forked child would lack.
+/// True if llvmpipe has no threads, which a forked child would lack: neither to draw nor to write shaders.
 bool has_no_driver_threads() {
-    const char* const threads = std::getenv("LP_NUM_THREADS");
-    return threads != nullptr && std::string_view(threads) == "0";
+    const auto has = [](const char* name, std::string_view value) {
+        const char* const given = std::getenv(name);
+        return given != nullptr && given == value;
+    };
+    return has("LP_NUM_THREADS", "0") && (has(kNoShaderCache, "true") || has(kNoShaderCache, "1"));
 }
 
 }  // namespace
