@@ -112,21 +112,6 @@ std::string_view hint_for_errno(int error_number, FileUse use) {
     }
 }
 
-ExitCode exit_code_of_errno(int error_number, ExitCode otherwise) {
-    switch (error_number) {
-        case ENOSPC:
-        case EDQUOT:
-        case EIO:
-            return ExitCode::kIo;
-        case EMFILE:
-        case ENFILE:
-        case ENOMEM:
-            return ExitCode::kTemporary;
-        default:
-            return otherwise;
-    }
-}
-
 void fail_file(std::string_view action, const std::string& path, int error_number) {
     // Only a pipe or a device makes a call wait for so long that a signal breaks it off.
     if (error_number == EINTR)

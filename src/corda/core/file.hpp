@@ -85,10 +85,6 @@ enum class FileUse { kRead, kWrite };
 /// Remedy for an errno value; empty if its text is enough.
 [[nodiscard]] std::string_view hint_for_errno(int error_number, FileUse use = FileUse::kWrite);
 
-/// The exit code for an errno value: kIo for a full or failing disk, kTemporary for too many open files or no
-/// memory, `otherwise` for others.
-[[nodiscard]] ExitCode exit_code_of_errno(int error_number, ExitCode otherwise = ExitCode::kIo);
-
 /// Makes a folder and its missing parents. Throws corda::Error (kIo).
 void make_folder(const std::string& path);
 

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/cancel.hpp"
-#include "corda/sim/auto/candidates.hpp"
+#include "corda/sim/auto/tolerances.hpp"
 #include "corda/sim/rattle/constraint_solver.hpp"
 #include "corda/sim/solver.hpp"
 #include "corda/sim/system.hpp"
@@ -108,7 +108,7 @@ void record(const System& system, const WorldDef& world, const PlanDef& def, Bod
     recording.clear();
     ++plan.passes;
     for (; i < total; ++i) {
-        check_cancelled();
+        count_work(system.particle_count());
         if (recording.advance(run, def.timeline, def.clock_s) == Status::kDiverged) return;
     }
 }

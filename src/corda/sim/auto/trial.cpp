@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "corda/core/cancel.hpp"
-#include "corda/sim/auto/candidates.hpp"
+#include "corda/sim/auto/tolerances.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/exact/string/part.hpp"
 #include "corda/sim/rattle/constraint_solver.hpp"
@@ -330,7 +330,7 @@ class CheckedRun : NonCopyable {
     }
 
     bool compare_at(double time_s) {
-        check_cancelled();
+        count_work(system_.particle_count());
         checks_.start(time_s, left());
         const Status status = work_.run(most_updates_by(time_s), [&] { return run_.pass(time_s, point_); });
         if (status == Status::kDiverged) {
@@ -417,7 +417,7 @@ Trial run_trial(const System& system, const WorldDef& world, const PlanDef& def,
     try {
         const CancelScope limit(count_steps);
         for (; i < total; ++i) {
-            check_cancelled();
+            count_work(system.particle_count());
             if (!run.agrees() && !is_known) conclude();
             if (!run.agrees() && !is_last) return trial;
             if (!run.record(static_cast<std::size_t>(i), recording)) break;

@@ -7,7 +7,8 @@
 
 namespace corda::sim {
 
-/// A trial that may be run.
+/// A trial that may be run. What trials have to reach is `tolerance_px` of the scene (scene/scene.hpp), in
+/// metres as PlanDef::tolerance_m.
 struct Candidate {
     Trial trial;
     double effort;  ///< of a second of its run, in parts of that of other candidates

@@ -1,4 +1,4 @@
-#include "corda/sim/auto/candidates.hpp"
+#include "corda/sim/auto/tolerances.hpp"
 
 #include <algorithm>
 #include <array>
