@@ -22,11 +22,11 @@ class Timeline {
     Timeline(FrameRate fps, std::int64_t last_frame, std::vector<double> still_times_s = {},
              std::optional<double> step_s = {});
 
-    [[nodiscard]] std::size_t size() const { return frame_count_ + still_times_s_.size(); }
+    [[nodiscard]] std::size_t size() const { return times_s_.size(); }
     /// Time `i` in seconds, i < size(); increasing.
-    [[nodiscard]] double time_s(std::size_t i) const;
+    [[nodiscard]] double time_s(std::size_t i) const { return times_s_[i]; }
     /// Whether time `i` is that of a frame.
-    [[nodiscard]] bool is_frame(std::size_t i) const;
+    [[nodiscard]] bool is_frame(std::size_t i) const { return is_frame_[i]; }
     /// The index of exactly this time; std::nullopt if the timeline does not have it.
     [[nodiscard]] std::optional<std::size_t> find(double time_s) const;
     [[nodiscard]] FrameRate fps() const { return fps_; }
@@ -35,14 +35,10 @@ class Timeline {
     [[nodiscard]] double step_s() const { return step_s_; }
 
   private:
-    /// Number of frames before `time_s`.
-    [[nodiscard]] std::size_t frames_before(double time_s) const;
-
     FrameRate fps_;
     double step_s_;
-    std::size_t frame_count_;
-    std::vector<double> still_times_s_;     ///< increasing; none is a frame time
-    std::vector<std::size_t> still_index_;  ///< their indices
+    std::vector<double> times_s_;
+    std::vector<bool> is_frame_;  ///< by time
 };
 
 }  // namespace corda
