@@ -158,8 +158,9 @@ void OutputFile::flush() {
 }
 
 void OutputFile::fail_write(int error_number) const {
-    if (error_number == EPIPE && is_standard_output(path_)) throw ReaderLeft();
-    fail_file("write", path_, error_number);
+    if (!is_standard_output(path_)) fail_file("write", path_, error_number);
+    if (error_number == EPIPE) throw ReaderLeft();
+    fail_file("write to", "standard output", error_number);
 }
 
 void OutputFile::close() {
