@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 # The public headers; users of the installed library see only these.
 foreach(header
         corda.hpp
-        core/basics.hpp core/exit_code.hpp core/image.hpp core/rational.hpp
+        core/basics.hpp core/image.hpp core/rational.hpp
         golden/compare.hpp golden/check_golden.hpp testing.hpp
         media/defs.hpp
         film/film.hpp

@@ -9,10 +9,30 @@
 #include <utility>
 #include <vector>
 
-#include "corda/core/exit_code.hpp"
-
 #pragma GCC visibility push(default)
 namespace corda {
+
+/// The exit statuses of the `corda` program. The numbers are a contract: scripts test for them.
+enum class ExitCode : int {
+    kOk = 0,
+    kInternal = 1,
+    kUsage = 2,
+    kInvalidScene = 3,
+    kNoGl = 4,
+    kEncoder = 5,
+    kIo = 6,
+    kMismatch = 7,
+    kDiverged = 8,
+    kTemporary = 75,
+    kHungUp = 129,
+    kInterrupted = 130,
+    kTerminated = 143,
+};
+
+/// True if a signal ended the work. Finished parts are kept then.
+[[nodiscard]] constexpr bool is_interruption(ExitCode code) {
+    return code == ExitCode::kHungUp || code == ExitCode::kInterrupted || code == ExitCode::kTerminated;
+}
 
 /// A value of a file, or of a setting in its place.
 struct Place {

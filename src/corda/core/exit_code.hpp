@@ -2,30 +2,9 @@
 
 #include <cerrno>
 
-#pragma GCC visibility push(default)
+#include "corda/core/basics.hpp"
+
 namespace corda {
-
-/// The exit statuses of the `corda` program. The numbers are a contract: scripts test for them.
-enum class ExitCode : int {
-    kOk = 0,
-    kInternal = 1,
-    kUsage = 2,
-    kInvalidScene = 3,
-    kNoGl = 4,
-    kEncoder = 5,
-    kIo = 6,
-    kMismatch = 7,
-    kDiverged = 8,
-    kTemporary = 75,
-    kHungUp = 129,
-    kInterrupted = 130,
-    kTerminated = 143,
-};
-
-/// True if a signal ended the work. Finished parts are kept then.
-[[nodiscard]] constexpr bool is_interruption(ExitCode code) {
-    return code == ExitCode::kHungUp || code == ExitCode::kInterrupted || code == ExitCode::kTerminated;
-}
 
 /// The exit code for an errno value: kIo for a full or failing disk, kTemporary for too many open files or no
 /// memory, `otherwise` for others.
@@ -45,4 +24,3 @@ enum class ExitCode : int {
 }
 
 }  // namespace corda
-#pragma GCC visibility pop

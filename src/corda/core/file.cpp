@@ -11,6 +11,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
+#include "corda/core/exit_code.hpp"
 #include "corda/core/text.hpp"
 
 namespace corda {

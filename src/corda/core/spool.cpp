@@ -10,6 +10,7 @@
 #include <string>
 
 #include "corda/core/cancel.hpp"
+#include "corda/core/exit_code.hpp"
 #include "corda/core/text.hpp"
 
 namespace corda {

@@ -7,6 +7,7 @@
 #include <cstdarg>
 #include <mutex>
 
+#include "corda/core/exit_code.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/text.hpp"
 
