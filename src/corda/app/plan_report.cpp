@@ -17,12 +17,14 @@ namespace {
 /// Shows how far the simulation of a film is once it takes more than a second.
 OnProgress show_progress(const Console& console, const std::string& what) {
     constexpr double kSilentSeconds = 1.0;
+    constexpr unsigned kCallsPerLook = 16;  // at the clock; calls are a millisecond apart, or less
     const double start_s = now_s();
-    return [&console, what, start_s, progress = std::shared_ptr<Progress>(), last = std::int64_t{0}](
-               std::int64_t done, std::int64_t total) mutable {
+    return [&console, what, start_s, progress = std::shared_ptr<Progress>(), last = std::int64_t{0},
+            calls = 0U](std::int64_t done, std::int64_t total) mutable {
         if (done < last || !progress) progress = std::make_shared<Progress>(console, what, total);
         last = done;
-        if (now_s() - start_s > kSilentSeconds) progress->update(done);
+        const bool looks = ++calls % kCallsPerLook == 0 || done == total;
+        if (looks && now_s() - start_s > kSilentSeconds) progress->update(done);
         return true;
     };
 }

@@ -108,7 +108,7 @@ void record(const System& system, const WorldDef& world, const PlanDef& def, Bod
     recording.clear();
     ++plan.passes;
     for (; i < total; ++i) {
-        count_work(system.particle_count());
+        check_cancelled();
         if (recording.advance(run, def.timeline, def.clock_s) == Status::kDiverged) return;
     }
 }

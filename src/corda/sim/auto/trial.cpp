@@ -330,7 +330,7 @@ class CheckedRun : NonCopyable {
     }
 
     bool compare_at(double time_s) {
-        count_work(system_.particle_count());
+        check_cancelled();
         checks_.start(time_s, left());
         const Status status = work_.run(most_updates_by(time_s), [&] { return run_.pass(time_s, point_); });
         if (status == Status::kDiverged) {
@@ -417,7 +417,7 @@ Trial run_trial(const System& system, const WorldDef& world, const PlanDef& def,
     try {
         const CancelScope limit(count_steps);
         for (; i < total; ++i) {
-            count_work(system.particle_count());
+            check_cancelled();
             if (!run.agrees() && !is_known) conclude();
             if (!run.agrees() && !is_last) return trial;
             if (!run.record(static_cast<std::size_t>(i), recording)) break;
