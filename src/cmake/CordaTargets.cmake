@@ -15,7 +15,7 @@ target_compile_options(corda_options INTERFACE
     # GCC 12 reports overlapping copies in ordinary string concatenation (PR 105651), and GCC 12 to 14 an unset member in
     # std::optional (PR 80635).
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-maybe-uninitialized>
-    # A loop whose iterations are independent may be vectorised; it need not be, as when it is not optimised.
+    # Clang warns of each loop with CORDA_INDEPENDENT that it does not vectorise, as without optimisation.
     $<$<CXX_COMPILER_ID:Clang>:-Wno-pass-failed>
     # No fused multiply-add: the same scene must give the same bytes on every CPU and with every compiler.
     -ffp-contract=off)

@@ -66,8 +66,8 @@ TEST_F(Output, SimulateWritesToDevicesAndPipes) {
     EXPECT_EQ(run_corda({"simulate", scene_, "-o", "/dev/stdout"}).out, csv);
     const auto null = run_corda({"simulate", scene_, "-o", "/dev/null"});
     EXPECT_EQ(null.exit_code, 0) << null.err;
-    const auto full =
-        test::run_shell(test::quoted(CORDA_PROGRAM) + " simulate -q " + scene_ + " -o - > /dev/full");
+    const auto full = test::run_shell(test::quoted(CORDA_PROGRAM) + " simulate " + test::quoted(scene_) +
+                                      " -o - > /dev/full");
     EXPECT_EQ(full.exit_code, 6);
     EXPECT_THAT(full.err, HasSubstr("cannot write to 'standard output': No space left on device"));
     const std::string pipe = test::quoted(folder_.file("pipe"));

@@ -215,8 +215,8 @@ int run(int argc, char** argv) {
     return act(Console(console_def), action, fmt::format("'{}'", fmt::join(argv + 1, argv + argc, " ")));
 }
 
-/// Settings of libraries, where the user has none. SVT-AV1 would print its own. The next run finds the
-/// shaders that this one has compiled: the program does not fork.
+/// Settings of libraries, where the user has none: SVT-AV1 prints nothing, and Mesa stores compiled shaders
+/// for the next run, which is safe because the program does not fork.
 void set_up_libraries() {
     setenv("SVT_LOG", "1", 0);
     setenv(gl::kNoShaderCache, "false", 0);

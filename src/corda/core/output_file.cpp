@@ -85,7 +85,7 @@ OutputFile::OutputFile(std::string path, const OutputOptions& options)
     check_path(path_);
     if (is_standard_output(path_)) {
         descriptor_ = Descriptor(::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
-        if (!descriptor_) fail_file("write", path_, errno);
+        if (!descriptor_) fail_write(errno);
         return;
     }
     const auto status = status_of(path_);
@@ -166,7 +166,7 @@ void OutputFile::fail_write(int error_number) const {
 void OutputFile::close() {
     flush();
     if (!temporary_.empty()) sync_file(descriptor_, path_);
-    if (const int status = descriptor_.close(); status != 0) fail_file("close", path_, status);
+    if (const int status = descriptor_.close(); status != 0) fail_write(status);
 }
 
 int OutputFile::rename_to(const std::string& name) const {

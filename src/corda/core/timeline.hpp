@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -24,9 +25,15 @@ class Timeline {
 
     [[nodiscard]] std::size_t size() const { return times_s_.size(); }
     /// Time `i` in seconds, i < size(); increasing.
-    [[nodiscard]] double time_s(std::size_t i) const { return times_s_[i]; }
+    [[nodiscard]] double time_s(std::size_t i) const {
+        assert(i < size());
+        return times_s_[i];
+    }
     /// Whether time `i` is that of a frame.
-    [[nodiscard]] bool is_frame(std::size_t i) const { return is_frame_[i]; }
+    [[nodiscard]] bool is_frame(std::size_t i) const {
+        assert(i < size());
+        return is_frame_[i];
+    }
     /// The index of exactly this time; std::nullopt if the timeline does not have it.
     [[nodiscard]] std::optional<std::size_t> find(double time_s) const;
     [[nodiscard]] FrameRate fps() const { return fps_; }

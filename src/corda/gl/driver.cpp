@@ -112,9 +112,9 @@ void require_driver_after_fork() {
     if (driver_use.process == 0 || driver_use.process == getpid() || driver_use.is_safe_after_fork) return;
     throw Error(
         ExitCode::kNoGl,
-        "the parent process has drawn with threads or hardware that a forked process does not have; start "
-        "processes by spawn (Python: multiprocessing.get_context(\"spawn\")), or fork before the first "
-        "picture");
+        "the parent process has drawn with threads (LP_NUM_THREADS, MESA_SHADER_CACHE_DISABLE) or hardware "
+        "that a forked process does not have; start processes by spawn (Python: "
+        "multiprocessing.get_context(\"spawn\")), or fork before the first picture");
 }
 
 }  // namespace corda::gl

@@ -16,11 +16,11 @@ namespace corda::gl {
 /// Mesa's variable that keeps it from storing compiled shaders in files for later processes.
 inline constexpr const char* kNoShaderCache = "MESA_SHADER_CACHE_DISABLE";
 
-/// Prepares the process for EGL; call it before any other use of EGL, under lock_driver(). Sets
-/// LP_NUM_THREADS to 0 and kNoShaderCache to true unless they are set: llvmpipe waits forever for threads
-/// that could not start or that fork() left in the parent, those that draw and the one that writes compiled
-/// shaders. Those that draw cost more than they save. Throws corda::Error (kNoGl) with the Debian package if
-/// a library is missing.
+/// Prepares the process for EGL; call it before any other use of EGL, under lock_driver(). Sets two variables
+/// unless they are set, because Mesa waits forever for threads that could not start or that fork() left in
+/// the parent: LP_NUM_THREADS to 0, as llvmpipe's threads cost more than they save, and kNoShaderCache to
+/// true, as a thread writes the shaders. Throws corda::Error (kNoGl) with the Debian package if a library is
+/// missing.
 void prepare_driver();
 
 /// Records that this process has used a driver. `is_safe_after_fork`: a child of fork() may make a context,

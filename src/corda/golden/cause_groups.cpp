@@ -5,6 +5,8 @@
 
 #include "corda/golden/suite.hpp"
 
+// The words of causes, and the groups in which pages and tables list the pictures.
+
 namespace corda::golden {
 namespace {
 

@@ -6,11 +6,11 @@
 #include <corda/golden/check_golden.hpp>
 #include <corda/golden/compare.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <optional>
 #include <tuple>
-#include <vector>
 
 #include "py_film.hpp"
 

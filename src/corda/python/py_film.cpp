@@ -1,7 +1,6 @@
 // The class `Film` of the Python module's C++ half, which corda/_film.py wraps.
 #include "py_film.hpp"
 
-#include <pybind11/functional.h>
 #include <pybind11/stl.h>
 
 #include <corda/film/plan_text.hpp>

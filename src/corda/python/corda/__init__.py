@@ -50,6 +50,10 @@ from .sweep import Sweep
 __all__ = ["Difference", "Error", "Film", "Sweep", "__version__", "compare", "read_png", "write_png"]
 
 
+for _each in (Film, Difference, compare, read_png, write_png):
+    _each.__module__ = __name__  # as users import them
+
+
 def __getattr__(name):
     """corda.plot without `import corda.plot`; it needs matplotlib, which all else does without."""
     if name == "plot":

@@ -122,7 +122,7 @@ def _packed_by_processes(definition, gl, numbers, count, jobs):
     except concurrent.futures.BrokenExecutor:
         time.sleep(_SIGNALS_APART_S)  # a signal to this process, too, is raised here and tells more
         raise make_error("a process that makes samples was killed; a smaller scene or picture, or fewer jobs, may help "
-                               "if memory ended", 75) from None
+                         "if memory ended", 75) from None
     finally:
         for process in set(multiprocessing.active_children()) - others:
             process.terminate()

@@ -109,7 +109,7 @@ def _require_same(sweep, origin, path):
     if changes:
         more = f", and {len(changes) - _MAX_NAMED} more" if len(changes) > _MAX_NAMED else ""
         raise make_error(f"'{path}' is of another sweep: {', '.join(changes[:_MAX_NAMED])}{more}; choose another folder, move it "
-                       "away, or replace all shards (--force)")
+                         "away, or replace all shards (--force)")
 
 
 def _fail_larger(path):
@@ -142,7 +142,7 @@ def open_folder(sweep, folder, force):
             origin = _origin_of(_read_json(os.path.join(folder, name)))
     if origin is None and files:
         raise make_error(f"'{os.path.join(folder, files[0])}' is there, and no manifest of a sweep; move it away, or choose "
-                       "another folder", 6)
+                         "another folder", 6)
     if not has_manifest:
         with OutputFile(manifest_path(folder)) as file:
             file.write(json_text(_empty_manifest(sweep)).encode())

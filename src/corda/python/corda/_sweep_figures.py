@@ -25,7 +25,7 @@ try:
     from .plot import _COLORS, _plain
 except ImportError:
     raise make_error("--plot and --sheet need matplotlib, which is not installed for this Python; install the package "
-                   "python3-matplotlib (apt-get install python3-matplotlib, or pip install matplotlib)") from None
+                     "python3-matplotlib (apt-get install python3-matplotlib, or pip install matplotlib)") from None
 
 _UNITS = {"_m_s": "m/s", "_s": "s", "_deg": "°", "_n": "N", "_px": "px", "_m": "m"}
 _STYLE = {"font.size": 9.0, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True,
@@ -138,7 +138,7 @@ def _read_points(sweep, folder, y, x):
         points.append({"key": _parameters.key_of(number), "series": name, "x": values[0], "y": values[1], "theory": theory})
     if not points:
         raise make_error(f"--plot {y.name}:{x.name}: no finished sample in '{folder}' has both figures (a period needs three "
-                       "passes below the only pin, and successive ones that agree)")
+                         "passes below the only pin, and successive ones that agree)")
     others_vary = [key for key, values in sweep.vary.items()
                    if key not in keys and not (isinstance(values, list) and len(values) == 1)]
     is_line = len(others_vary) <= 1

@@ -229,7 +229,7 @@ class _Reader:
         """Raises all problems, one per line in the order of the file."""
         if self._problems:
             raise make_error("\n".join(f"{self._sweep.source}:{line}:{column}: {key}: {problem}" for key, (line, column, problem) in
-                                   sorted(self._problems.items(), key=lambda item: item[1])), 3)
+                                       sorted(self._problems.items(), key=lambda item: item[1])), 3)
 
     def place(self, *path):
         return ":".join(map(str, (self._sweep.source, *self._places.of(path))))

@@ -94,7 +94,7 @@ class Sweep:
         splits = self._definition.splits
         if name not in splits:
             raise make_error(f"split: {name!r} is no split of {self._definition.source}; " +
-                         (f"it has {', '.join(splits)}" if splits else "give it a table [split]"))
+                             (f"it has {', '.join(splits)}" if splits else "give it a table [split]"))
         return self._of(tuple(number for number in self._numbers if _parameters.split_of(self._definition, number) == name))
 
     def parameters(self, index):

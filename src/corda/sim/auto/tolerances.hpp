@@ -5,10 +5,12 @@
 
 #include "corda/sim/auto/planner.hpp"
 
+// The trials that `auto` may run, with their tolerances and steps. The tolerance that one has to reach is
+// `tolerance_px` of the scene (scene/scene.hpp), in metres PlanDef::tolerance_m.
+
 namespace corda::sim {
 
-/// A trial that may be run. What trials have to reach is `tolerance_px` of the scene (scene/scene.hpp), in
-/// metres as PlanDef::tolerance_m.
+/// A trial that may be run.
 struct Candidate {
     Trial trial;
     double effort;  ///< of a second of its run, in parts of that of other candidates
