@@ -224,9 +224,10 @@ void append(const NetDef& net, System& system) {
     system.bodies.push_back(body);
 }
 
-/// Copies `count` entries from `first` on.
+/// Copies `count` entries from `first` on; of an empty vector none.
 template <class T>
 std::vector<T> slice(const std::vector<T>& all, std::size_t first, std::size_t count) {
+    if (all.empty()) return {};
     const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
     return {begin, begin + static_cast<std::ptrdiff_t>(count)};
 }
@@ -255,8 +256,8 @@ System alone(const System& system, const Body& body) {
         part.moves.push_back(std::move(move));
     }
     // Those of other bodies are none of its own.
-    part.release_s = slice(system.release_s, first, system.release_s.empty() ? 0 : count);
-    part.cut_s = slice(system.cut_s, body.first_bar, system.cut_s.empty() ? 0 : body.bar_count);
+    part.release_s = slice(system.release_s, first, count);
+    part.cut_s = slice(system.cut_s, body.first_bar, body.bar_count);
     const auto is_never = [](double time_s) { return time_s == kNoEvent; };
     if (std::ranges::all_of(part.release_s, is_never)) part.release_s.clear();
     if (std::ranges::all_of(part.cut_s, is_never)) part.cut_s.clear();
