@@ -30,9 +30,8 @@ view::Caption caption_of(const Look& look, const Motion& motion, const State& st
     view::Caption caption{state.time_s, figures.energy_error,
                           method_caption(plan, estimate_px, look.scene.overlay.language)};
     if (look.scene.overlay.energy && !figures.energy_error) {
-        const Energy energy = motion.energy_of(state);
-        caption.energies_j = {{kSeries.kinetic.word, energy.kinetic_j},
-                              {kSeries.potential.word, energy.potential_j() - look.energy_zero_j}};
+        caption.energy = motion.energy_of(state);
+        caption.energy->weight_j -= look.energy_zero_j;
     }
     caption.labels = view::places_of(look.overlay.labels, state, map);
     return caption;

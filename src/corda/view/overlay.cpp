@@ -6,7 +6,6 @@
 #include <map>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "corda/view/number_text.hpp"
 #include "corda/view/words.hpp"
@@ -20,7 +19,7 @@ constexpr int kMaxDecimals = 9;
 constexpr double kTwoDigitsS = 10.0;
 
 /// "kinetic 1.25 J, potential −0.75 J", with a unit and decimals that depend on the scale alone.
-std::string energy_text(std::span<const NamedEnergy> energies, double scale_j, Language language) {
+std::string energy_text(const Energy& energy, double scale_j, Language language) {
     const NumberTitle title = title_of("", "J", scale_j);  // " (kJ)"
     const double scale = scale_j / title.unit;
     const int decimals = scale >= 100.0 ? 0 : scale >= 10.0 ? 1 : 2;
@@ -30,10 +29,8 @@ std::string energy_text(std::span<const NamedEnergy> energies, double scale_j, L
         return (is_negative ? "−" : "") + localized(digits, language) + " " +
                title.text.substr(2, title.text.size() - 3);
     };
-    std::vector<std::string> texts;
-    for (const auto& [word, value_j] : energies)
-        texts.push_back(translated(word, language) + " " + text(value_j));
-    return fmt::format("{}", fmt::join(texts, ", "));
+    return fmt::format("{} {}, {} {}", translated("kinetic", language), text(energy.kinetic_j),
+                       translated("potential", language), text(energy.potential_j()));
 }
 
 /// "1/4 speed", "2× speed"
@@ -53,7 +50,7 @@ constexpr BottomText kBottomTexts[] = {
          if (caption.energy_error)
              return localized(translated("energy error", language) + " " + power_text(*caption.energy_error),
                               language);
-         return energy_text(caption.energies_j, energy_scale_j, language);
+         return caption.energy ? energy_text(*caption.energy, energy_scale_j, language) : "";
      }},
 };
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "corda/core/rational.hpp"
+#include "corda/sim/simulation.hpp"
 #include "corda/view/camera.hpp"
 #include "corda/view/colors.hpp"
 #include "corda/view/defs.hpp"
@@ -17,19 +18,13 @@
 
 namespace corda::view {
 
-/// An energy with its English word.
-struct NamedEnergy {
-    const char* word;
-    double value_j;
-};
-
 /// Texts of an overlay for one picture.
 struct Caption {
     std::optional<double> time_s;  ///< std::nullopt: no time is shown
     std::optional<double> energy_error;
     std::string method;
     std::vector<LabelPlace> labels = {};
-    std::vector<NamedEnergy> energies_j = {};  ///< shown if energy_error is not defined
+    std::optional<Energy> energy = {};  ///< shown if its error is not defined
 };
 
 /// The data of a whole motion that an overlay shows.

@@ -96,7 +96,7 @@ TEST(Overlays, ShowEnergiesWithoutAnErrorInTheUnitOfTheScene) {
         DrawList list;
         list.width = 640;
         list.height = 360;
-        draw(overlay, {1.0, {}, {}, {}, {{"kinetic", kinetic_j}, {"potential", potential_j}}}, 100.0, list);
+        draw(overlay, {1.0, {}, {}, {}, Energy{kinetic_j, potential_j, 0.0}}, 100.0, list);
         return list.texts.back().utf8;
     };
     EXPECT_EQ(text(1.2345, -0.5, 9.0), "kinetic 1.23 J, potential −0.50 J");

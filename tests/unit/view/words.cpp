@@ -81,7 +81,7 @@ TEST(Words, AreThoseOfTheOverlay) {
     EXPECT_EQ(words({1.25, 3.1e-12, {}}),
               "t = 1,25 s|20 cm|Energiefehler 3,1·10⁻¹²|Zugkraft (N)|0|0,25|0,5|");
     Caption caption{0.5, {}, {}};
-    caption.energies_j = {{"kinetic", 1.25}, {"potential", -0.5}};
+    caption.energy = Energy{1.25, -0.5, 0.0};
     EXPECT_NE(words(caption).find("|kinetisch 1,25 J, potenziell −0,50 J|"), std::string::npos);
 }
 
