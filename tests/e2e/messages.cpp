@@ -263,6 +263,13 @@ TEST_F(Messages, WarnOncePerFilmOfPlotsWithoutRoom) {
     }
 }
 
+TEST_F(Messages, CallStandardOutputByItsName) {
+    const auto full = test::run_shell(test::quoted(CORDA_PROGRAM) + " simulate " + test::quoted(scene_) +
+                                      " -o - > /dev/full");
+    EXPECT_EQ(full.exit_code, 6);
+    EXPECT_THAT(full.err, HasSubstr("cannot write to 'standard output': No space left on device"));
+}
+
 TEST_F(Messages, ShowTenNotesOfAPlanAndCountTheRest) {
     const std::string scene = folder_.write("notes.toml", R"(schema = 1
 [world]

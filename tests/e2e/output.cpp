@@ -66,10 +66,7 @@ TEST_F(Output, SimulateWritesToDevicesAndPipes) {
     EXPECT_EQ(run_corda({"simulate", scene_, "-o", "/dev/stdout"}).out, csv);
     const auto null = run_corda({"simulate", scene_, "-o", "/dev/null"});
     EXPECT_EQ(null.exit_code, 0) << null.err;
-    const auto full = test::run_shell(test::quoted(CORDA_PROGRAM) + " simulate " + test::quoted(scene_) +
-                                      " -o - > /dev/full");
-    EXPECT_EQ(full.exit_code, 6);
-    EXPECT_THAT(full.err, HasSubstr("cannot write to 'standard output': No space left on device"));
+    EXPECT_EQ(run_corda({"simulate", scene_, "-o", "/dev/full"}).exit_code, 6);
     const std::string pipe = test::quoted(folder_.file("pipe"));
     const auto piped =
         test::run_shell("mkfifo " + pipe + "; cat " + pipe + " & " + test::quoted(CORDA_PROGRAM) +

@@ -137,7 +137,7 @@ bool is_of_host(EGLDisplay display) {
            eglQueryString(display, EGL_VERSION) != nullptr;
 }
 
-/// True if llvmpipe has no threads, which a forked child would lack: neither to draw nor to write shaders.
+/// True if Mesa starts no thread that a forked child would lack: none that draws, none that stores shaders.
 bool has_no_driver_threads() {
     const auto has = [](const char* name, std::string_view value) {
         const char* const given = std::getenv(name);

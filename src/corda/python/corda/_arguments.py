@@ -1,4 +1,4 @@
-"""Arguments of Python as what the C++ half takes: file names, text, numbers, settings, arrays; and errors that name them."""
+"""Converts arguments for the C++ half: file names, text, numbers, settings and arrays. Errors name the argument."""
 
 import collections.abc as abc
 import decimal
