@@ -155,7 +155,8 @@ void Recording::add_state(const System& system, const State& state, const Figure
             particle_bounds_[i].include(state.x_m[i], state.y_m[i]);
         if (quantity_) add_to_histogram(system, state);
     }
-    row_.assign(1, state.time_s);
+    row_.clear();
+    row_.push_back(state.time_s);
     for (const Part& part : parts_) {
         const auto first = (state.*part.array).begin();
         row_.insert(row_.end(), first, first + static_cast<std::ptrdiff_t>(part.count));

@@ -57,7 +57,9 @@ Simulation::~Simulation() = default;
 
 Status Simulation::advance_to(double time_s) {
     if (move_to(time_s, next_) == Status::kDiverged) return Status::kDiverged;
-    std::swap(state_, next_);
+    state_.time_s = next_.time_s;
+    state_.x_m.swap(next_.x_m);
+    state_.y_m.swap(next_.y_m);
     const CancelScope whole({}, CancelScope::Outer::kIgnored);
     observe();
     return Status::kOk;
@@ -98,8 +100,10 @@ void Simulation::set_outputs(const StateFields& fields) {
 
 void Simulation::read() {
     if (fields_.velocities) {
-        state_.vx_m_s.assign(state_.x_m.size(), 0.0);
-        state_.vy_m_s.assign(state_.x_m.size(), 0.0);
+        for (std::vector<double>* const v_m_s : {&state_.vx_m_s, &state_.vy_m_s}) {
+            v_m_s->resize(state_.x_m.size());
+            std::ranges::fill(*v_m_s, 0.0);
+        }
         solver_->velocities(state_);
     }
     if (!fields_.tensions) return;
@@ -125,8 +129,9 @@ void Simulation::observe() {
     figures_.energy_error = sim::energy_error(energy_change_j(), energy_scale_j_);
     figures_.loads = std::nullopt;
     if (knows_tensions_) figures_.loads = load_meter_->of(system_, state_, tension_n_);
-    largest_ = sim::larger_figures(largest_, figures_);
-    if (!branched_s_ && solver_->has_branched()) branched_s_ = state_.time_s;
+    diagnostics_.steps = solver_->steps();
+    diagnostics_.largest = sim::larger_figures(diagnostics_.largest, figures_);
+    if (!diagnostics_.branched_s && solver_->has_branched()) diagnostics_.branched_s = state_.time_s;
 }
 
 std::vector<MethodDef> Simulation::methods() const {
@@ -135,8 +140,8 @@ std::vector<MethodDef> Simulation::methods() const {
     return methods;
 }
 
-Diagnostics Simulation::diagnostics() const {
-    return {solver_->steps(), largest_, branched_s_};
+std::uint64_t Simulation::steps() const {
+    return solver_->steps();
 }
 
 }  // namespace corda

@@ -90,7 +90,10 @@ class Simulation {
     [[nodiscard]] const System& system() const { return system_; }
     /// Figures of the current state.
     [[nodiscard]] const Figures& figures() const { return figures_; }
-    [[nodiscard]] Diagnostics diagnostics() const;
+    /// Up to the last advance_to().
+    [[nodiscard]] const Diagnostics& diagnostics() const { return diagnostics_; }
+    /// Steps taken so far, also during an advance_to() or pass().
+    [[nodiscard]] std::uint64_t steps() const;
     /// The method of each body with every default filled in: given again, they run with the same bits.
     [[nodiscard]] std::vector<MethodDef> methods() const;
 
@@ -120,8 +123,7 @@ class Simulation {
     double initial_energy_j_ = 0.0;
     double energy_scale_j_ = 0.0;
     Figures figures_;
-    Figures largest_;
-    std::optional<double> branched_s_;
+    Diagnostics diagnostics_;
 };
 
 /// Positions of all particles at some times, from another simulation or a measurement. At these times the

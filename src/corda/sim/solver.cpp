@@ -328,15 +328,15 @@ double implicit_steps_1_s(const System& system, const Body& body, const Forces& 
            (body.material.compliance_1_n > 0.0 ? kStepsIfStretching / root : kStepsOfSwing / std::sqrt(root));
 }
 
-LoadMeter::LoadMeter(const System& system) {
+LoadMeter::LoadMeter(const System& system) : fx_n_(system.particle_count()), fy_n_(system.particle_count()) {
     if (system.bends.empty()) return;
     event_s_ = event_times_s(system);
     bends_.emplace(system, 0, system.particle_count());
 }
 
 void LoadMeter::find_forces(const System& system, const State& state, std::span<const double> tension_n) {
-    fx_n_.assign(system.particle_count(), 0.0);
-    fy_n_.assign(system.particle_count(), 0.0);
+    std::ranges::fill(fx_n_, 0.0);
+    std::ranges::fill(fy_n_, 0.0);
     for (std::size_t k = 0; k < tension_n.size(); ++k) {
         if (tension_n[k] == 0.0) continue;
         const auto [a, b, reach, rest_m] = system.bars[k];

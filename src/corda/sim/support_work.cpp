@@ -57,14 +57,14 @@ double SupportWork::until_j(double time_s) {
         const double end_s = event == event_s_.end() ? time_s : std::min(*event, time_s);
         const double left_s = end_s - until_s_;
         const double part_s = longest_s_ < left_s ? std::min(longest_s_, 0.5 * left_s) : left_s;
-        const std::uint64_t steps = run_.diagnostics().steps;
+        const std::uint64_t steps = run_.steps();
         for (const auto& [point, weight] : kGauss) {
             if (run_.advance_to(until_s_ + 0.5 * (1.0 + point) * part_s) == Status::kDiverged)
                 return work_j_ = std::numeric_limits<double>::infinity();
             const State& state = run_.state();
             work_j_ += 0.5 * weight * part_s * meter_.support_power_w(run_.system(), state, state.tension_n);
         }
-        const auto taken = static_cast<double>(run_.diagnostics().steps - steps);
+        const auto taken = static_cast<double>(run_.steps() - steps);
         longest_s_ = std::min(part_s / std::max(0.5, kPartsPerStep * taken), most_s_);
         until_s_ = part_s == left_s ? end_s : until_s_ + part_s;
     }

@@ -61,7 +61,7 @@ class Meter {
             updates_ = std::min(before + static_cast<double>(work_done()), most_updates);
             if (updates_ == most_updates) throw TooMuchWork();
         };
-        const CancelScope limit(count);
+        const CancelScope limit(std::ref(count));
         const auto result = part();
         count();
         return result;

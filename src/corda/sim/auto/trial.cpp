@@ -253,7 +253,7 @@ class CheckedRun : NonCopyable {
           point_(run_.state()) {}
 
     [[nodiscard]] double time_s() const { return run_.state().time_s; }
-    [[nodiscard]] std::uint64_t steps() const { return run_.diagnostics().steps; }
+    [[nodiscard]] std::uint64_t steps() const { return run_.steps(); }
     /// Work of the run, and of all.
     [[nodiscard]] double run_updates() const { return work_.updates(); }
     [[nodiscard]] double updates() const {

@@ -112,7 +112,7 @@ const TimeFunction::Piece* TimeFunction::piece_at(double time_s) const {
     return after == pieces_.begin() ? nullptr : &*(after - 1);
 }
 
-Vec2 TimeFunction::operator()(double time_s) const {
+Vec2 TimeFunction::sum_at(double time_s) const {
     Vec2 sum = constant_;
     for (const Wave& wave : waves_) {
         const auto [c, s] = cosine_sine_of_turns(wave.frequency_hz * time_s + wave.turns);

@@ -41,7 +41,9 @@ class TimeFunction {
 
     /// Always 0.
     [[nodiscard]] bool empty() const { return waves_.empty() && pieces_.empty() && constant_ == Vec2{}; }
-    [[nodiscard]] Vec2 operator()(double time_s) const;
+    [[nodiscard]] Vec2 operator()(double time_s) const {
+        return waves_.empty() && pieces_.empty() ? constant_ : sum_at(time_s);
+    }
     /// Writes the coefficients of the series in (t - time_s) / unit_s, as many as fit. At a key they are
     /// those of the piece that starts there.
     void expand(double time_s, double unit_s, std::span<Vec2> coefficients) const;
@@ -73,6 +75,7 @@ class TimeFunction {
         std::array<Vec2, kTerms> term{};
         friend bool operator==(const Piece&, const Piece&) = default;
     };
+    [[nodiscard]] Vec2 sum_at(double time_s) const;
     /// The piece at a time; nullptr before the first.
     [[nodiscard]] const Piece* piece_at(double time_s) const;
 
