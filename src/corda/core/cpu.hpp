@@ -22,6 +22,8 @@
 #else
 #define CORDA_AVX2_CLONES
 #endif
+/// A function that is compiled for AVX2 where a function for AVX2 calls it.
+#define CORDA_INLINE [[gnu::always_inline]] inline
 
 /// Before a loop none of whose iterations reads what another writes, for loops over more arrays than a
 /// compiler compares.

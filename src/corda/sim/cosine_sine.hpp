@@ -1,8 +1,7 @@
 #pragma once
 
+#include "corda/core/cpu.hpp"
 #include "corda/sim/defs.hpp"
-
-#define CORDA_INLINE [[gnu::always_inline]] inline
 
 namespace corda::sim {
 

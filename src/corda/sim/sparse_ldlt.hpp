@@ -1,19 +1,36 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace corda::sim {
 
-/// L D L' of a sparse symmetric matrix, whose pattern is analysed once: row by row of L (T. Davis, Algorithm
-/// 849, ACM Transactions on Mathematical Software 31 (2005) 587), in Eigen's approximate minimum degree
-/// ordering. Consecutive columns of the same pattern are subtracted together, entry by entry from the first
-/// to the last one, so the bits are those of Eigen::SimplicialLDLT, in two thirds of its time. A
-/// factorisation can be cancelled: that of a large net takes seconds. There are no factors then.
+/// L D L' of a sparse symmetric matrix, whose pattern is analysed once, by the multifrontal method (I. Duff
+/// and J. Reid, ACM Transactions on Mathematical Software 9 (1983) 302) in Eigen's approximate minimum degree
+/// ordering. Consecutive columns of nearly the same pattern form a block, with zeros where the pattern has no
+/// entry. A factorisation can be cancelled: that of a large net takes seconds. There are no factors then.
 class SparseLdlt {
   public:
+    /// Columns of L with entries in their own rows and in those below the block.
+    struct Block {
+        std::uint32_t first = 0;  ///< column
+        std::uint32_t columns = 0;
+        std::uint32_t below = 0;
+        std::uint32_t begin = 0;  ///< of the rows below in row_
+        std::size_t value = 0;    ///< the first entry in value_
+        std::size_t stride = 0;   ///< from column to column
+        /// Changes by the columns in those of the rows below, kept until they are added to the parent, the
+        /// block of the first row below.
+        std::size_t update = 0;
+        std::size_t update_stride = 0;
+        std::uint32_t stack = 0;  ///< that has it
+        std::uint32_t child = 0;  ///< the first block whose parent this is
+        std::uint32_t next = 0;   ///< the next one with the same parent
+    };
+
     /// The matrices have entries where this lower triangle has some.
     void analyse(const Eigen::SparseMatrix<double>& lower);
 
@@ -28,34 +45,30 @@ class SparseLdlt {
 
   private:
     struct Source {
-        std::uint32_t column = 0;
         std::uint32_t entry = 0;
-    };
-    /// Consecutive columns that a row of L has, all of the same pattern below the last.
-    struct Run {
-        std::uint32_t first = 0;
-        std::uint32_t count = 0;
+        std::size_t value = 0;
     };
 
     void order(const Eigen::SparseMatrix<double>& lower);
-    void find_columns();
-    void find_runs();
-    /// Eliminates a run of columns from a row; returns the number of products.
-    std::uint64_t eliminate(const Run& run, double& diagonal);
+    void find_blocks(const Eigen::SparseMatrix<double>& lower);
+    void find_parents();
+    void find_memory();
+    void find_sources(const Eigen::SparseMatrix<double>& lower);
+    void add_updates(const Block& block);
 
-    std::vector<std::uint32_t> place_;  ///< of each row of the matrix in the order of elimination
-    std::vector<std::uint32_t> source_begin_;
-    std::vector<Source> source_;  ///< the entries of each row's lower triangle, in the order of elimination
-    std::vector<std::uint32_t> parent_;  ///< of each column: the next one that it changes
-    std::vector<std::uint32_t> run_begin_;
-    std::vector<Run> runs_;  ///< of each row of L, in an order in which it can be eliminated
-    std::vector<std::uint32_t> begin_;
-    std::vector<std::uint32_t> index_;
-    std::vector<double> value_;  ///< of L by columns
+    std::vector<std::uint32_t> place_;     ///< of each row of the matrix in the order of elimination
+    std::vector<Block> blocks_;            ///< children before their parent
+    std::vector<std::uint32_t> block_of_;  ///< of each column
+    std::vector<std::uint32_t> row_;       ///< below each block, padded to whole Fours
+    std::vector<std::uint32_t> to_;        ///< the same, counted from the first row of the parent
+    std::vector<Source> source_;           ///< where the entries of the matrix belong
+    std::vector<double> value_;
     std::vector<double> pivot_;
-    // Scratch: entries that the columns have so far, a row of the matrix, a run of it, and a solution.
-    std::vector<std::uint32_t> filled_;
-    std::vector<double> row_, gathered_, solution_;
+    std::vector<double> inverse_pivot_;
+    /// Updates of blocks at even and at odd depths of the tree, so that a block's own is not among those
+    /// which are added to it.
+    std::array<std::vector<double>, 2> stack_;
+    std::vector<double> solution_;
 };
 
 }  // namespace corda::sim

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseCholesky>
+#include <random>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -24,19 +26,44 @@ Eigen::SparseMatrix<double> grid_matrix(int n) {
     return matrix;
 }
 
-TEST(SparseLdlt, HasTheBitsOfEigen) {
-    for (const int n : {1, 2, 7, 30}) {
-        const Eigen::SparseMatrix<double> matrix = grid_matrix(n);
-        Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> eigens;
-        eigens.analyzePattern(matrix);
-        eigens.factorize(matrix);
-        SparseLdlt own;
+/// The lower triangle of a matrix with entries anywhere: a row has some `density` of those before it.
+Eigen::SparseMatrix<double> random_matrix(int size, double density) {
+    std::mt19937 generator(7);
+    std::uniform_real_distribution<double> any(-1.0, 1.0);
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int row = 0; row < size; ++row) {
+        entries.emplace_back(row, row, 2.0 + size * density);
+        for (int column = 0; column < row; ++column)
+            if (any(generator) < 2.0 * density - 1.0) entries.emplace_back(row, column, any(generator));
+    }
+    Eigen::SparseMatrix<double> matrix(size, size);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    return matrix;
+}
+
+TEST(SparseLdlt, HasTheSolutionAndThePivotsOfEigen) {
+    std::vector<Eigen::SparseMatrix<double>> matrices;
+    for (const int n : {1, 2, 3, 7, 30}) matrices.push_back(grid_matrix(n));
+    for (const double density : {0.0, 0.005, 0.02, 0.1, 1.0}) matrices.push_back(random_matrix(150, density));
+    SparseLdlt own;
+    for (const Eigen::SparseMatrix<double>& matrix : matrices) {
+        SCOPED_TRACE(std::to_string(matrix.rows()) + " rows, " + std::to_string(matrix.nonZeros()) +
+                     " entries");
+        const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> eigens(matrix);
         own.analyse(matrix);
-        ASSERT_TRUE(own.factorise(matrix.valuePtr())) << n;
-        const Eigen::VectorXd right = Eigen::VectorXd::LinSpaced(n * n, -1.0, 2.0);
+        ASSERT_TRUE(own.factorise(matrix.valuePtr()));
+        const Eigen::VectorXd pivots = eigens.permutationPinv() * eigens.vectorD();
+        for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+            ASSERT_NEAR(own.pivot(static_cast<std::size_t>(i)), pivots[i], 1e-13 * pivots[i]) << i;
+        const Eigen::VectorXd right = Eigen::VectorXd::LinSpaced(matrix.rows(), -1.0, 2.0);
+        const Eigen::VectorXd expected = eigens.solve(right);
         Eigen::VectorXd solved = right;
         own.solve(solved.data());
-        EXPECT_TRUE(solved == eigens.solve(right)) << n;
+        EXPECT_LT((solved - expected).lpNorm<Eigen::Infinity>(), 1e-13 * expected.lpNorm<Eigen::Infinity>());
+        ASSERT_TRUE(own.factorise(matrix.valuePtr()));
+        Eigen::VectorXd again = right;
+        own.solve(again.data());
+        EXPECT_TRUE(again == solved);
     }
 }
 

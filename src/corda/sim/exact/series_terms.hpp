@@ -6,31 +6,12 @@
 #include "corda/sim/chain_tensions.hpp"
 #include "corda/sim/cosine_sine.hpp"
 #include "corda/sim/exact/chain_series.hpp"
+#include "corda/sim/four.hpp"
 
 namespace corda::sim {
 
-/// Four numbers at a time, for functions that are also compiled for registers of that width.
-using Four [[gnu::vector_size(kSeriesLanes * sizeof(double))]] = double;
 using FourBits [[gnu::vector_size(kSeriesLanes * sizeof(double))]] = long long;
-static_assert(kSeriesLanes == 4);
-// References, because how such a type is passed by value depends on the CPU.
-CORDA_INLINE const Four& four(const double* x) {
-    return *reinterpret_cast<const Four*>(x);
-}
-CORDA_INLINE Four& four(double* x) {
-    return *reinterpret_cast<Four*>(x);
-}
-/// Four numbers that need not be aligned to a register's size. A struct, because clang++ forgets the smaller
-/// alignment of a reference to a vector type.
-struct [[gnu::packed, gnu::may_alias]] AnyFour {
-    Four value;
-};
-CORDA_INLINE const AnyFour& any_four(const double* x) {
-    return *reinterpret_cast<const AnyFour*>(x);
-}
-CORDA_INLINE AnyFour& any_four(double* x) {
-    return *reinterpret_cast<AnyFour*>(x);
-}
+static_assert(kSeriesLanes == kFour);
 
 /// The last of `before` and the first three of `here`. From registers, because a load that spans two stores
 /// just made would wait until both are in the cache.

@@ -10,8 +10,6 @@
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
-// Compiled for AVX2 where a function for AVX2 calls them.
-#define CORDA_INLINE [[gnu::always_inline]] inline
 
 namespace corda::sim {
 namespace {
