@@ -73,7 +73,7 @@ std::vector<std::uint32_t> postorder(const std::vector<std::uint32_t>& parent) {
 
 /// The columns of a block, and what they change in those of the rows below.
 struct Front {
-    Block block;
+    const Block& block;
     double* value;
     double* update;
     double* pivot;
@@ -334,12 +334,11 @@ void SparseLdlt::add_updates(const Block& block) {
         const std::uint32_t* const to = to_.data() + child.begin;
         const double* from = stack_[child.stack].data() + child.update;
         for (std::uint32_t c = 0; c < child.below; ++c, from += child.update_stride) {
-            // Row `columns` of the block is row 0 of its update.
-            double* const column =
-                to[c] < block.columns
-                    ? value_.data() + block.value + to[c] * block.stride
-                    : update + (to[c] - block.columns) * block.update_stride - block.columns;
-            for (std::uint32_t r = c; r < child.below; ++r) column[to[r]] += from[r];
+            const bool own = to[c] < block.columns;
+            const std::uint32_t first_row = own ? 0 : block.columns;
+            double* const column = own ? value_.data() + block.value + to[c] * block.stride
+                                       : update + (to[c] - first_row) * block.update_stride;
+            for (std::uint32_t r = c; r < child.below; ++r) column[to[r] - first_row] += from[r];
         }
     }
 }
