@@ -239,9 +239,7 @@ EstimateCase braced(Random& random) {
     return one_net(random, net, 1.0);
 }
 
-NetDef grid(Random& random) {
-    const int columns = pick(random, 2, 4);
-    const int rows = pick(random, 2, 4);
+NetDef grid(Random& random, int columns, int rows) {
     NetDef net;
     const auto index = [&](int column, int row) {
         return static_cast<std::uint32_t>(row * columns + column);
@@ -256,6 +254,12 @@ NetDef grid(Random& random) {
     }
     net.pinned = {0};
     return net;
+}
+
+NetDef grid(Random& random) {
+    const int columns = pick(random, 2, 4);
+    const int rows = pick(random, 2, 4);
+    return grid(random, columns, rows);
 }
 
 /// A net whose cells are parallelograms, on a pin, on a row of pins, or free.
@@ -283,6 +287,19 @@ EstimateCase elastic_net(Random& random) {
     NetDef net = grid(random);
     net.material.compliance_1_n = pick_log(random, 1e-4, 1e-2);
     net.material.is_string = pick(random, 0, 2) == 0;
+    return one_net(random, net, 0.5);
+}
+
+/// A cloth of light, stiff strings on one or both of its upper corners.
+EstimateCase string_cloth(Random& random) {
+    const int columns = pick(random, 4, 7);
+    const int rows = pick(random, 4, 7);
+    NetDef net = grid(random, columns, rows);
+    const double spacing_m = pick_log(random, 0.03, 0.3);
+    for (Vec2& point : net.points_m) point = spacing_m * point;
+    if (pick(random, 0, 2) > 0) net.pinned.push_back(columns - 1);
+    net.mass_kg.assign(net.points_m.size(), pick_log(random, 3e-3, 3e-2));
+    net.material = {pick_log(random, 1e-4, 1e-3), true};
     return one_net(random, net, 0.5);
 }
 
@@ -373,6 +390,7 @@ std::span<const EstimateFamily> other_families() {
                                                                 {"net", net},
                                                                 {"parallelograms", parallelograms},
                                                                 {"elastic_net", elastic_net},
+                                                                {"string_cloth", string_cloth},
                                                                 {"several", several},
                                                                 {"units", units},
                                                                 {"tiny_frames", tiny_frames},

@@ -66,13 +66,15 @@ std::optional<std::size_t> next_trial(const System& system, const std::vector<Ca
     constexpr double kSmallUpdates = 2e6;      // about 0.1 s: worth any gain
     constexpr double kLooseTolerance = 1e-6;   // a looser run drifts visibly
     const Candidate& failed = candidates[failure.number];
-    const double checks_per_step = static_cast<double>(failed.trial.check_steps) /
-                                   static_cast<double>(std::max<std::uint64_t>(1, failed.trial.steps));
+    const double work_of_check = (failed.trial.updates / std::max(1.0, failure.run_updates) - 1.0) /
+                                 std::max(1.0, failed.trial.passes - 1.0);
+    const double dearer = work_of_check * failed.effort / failed.check_effort;  // checks than expected
     const double run_updates = updates_of_step(system, failed.trial.method) *
                                static_cast<double>(failed.trial.steps) * end_s / failure.ran_s;
     const auto whole_price = [&](const Candidate& other) {
-        const auto checks = static_cast<double>(check_count(system, other.trial.method, false));
-        return other.effort / failed.effort * (1.0 + checks * checks_per_step * expected_s(other) / end_s);
+        const auto checks = static_cast<double>(check_count(system, other.trial.method));
+        return (other.effort + checks * dearer * other.check_effort * expected_s(other) / end_s) /
+               failed.effort;
     };
     const auto fits = [&](const Candidate& other) {
         return !(whole_price(other) * failure.run_updates * end_s > failure.left_updates * failure.ran_s);
@@ -164,7 +166,6 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
         Trial& trial = candidates[*i].trial;
         bool is_too_dear = false;
         TrialKind kind;
-        kind.is_first = !last;
         kind.most_updates = left_updates;
         kind.most_steps_1_s = candidates[*i].most_steps_1_s;
         kind.first_steps = kShortSteps + kind.most_steps_1_s * def.timeline.step_s();

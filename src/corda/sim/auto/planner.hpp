@@ -77,7 +77,6 @@ class Meter {
 
 /// The place of a trial among those of a plan.
 struct TrialKind {
-    bool is_first = true;      ///< if of `rattle`, it has one check
     double first_steps = 0.0;  ///< that the run may take, and then per second of motion
     double most_steps_1_s = HUGE_VAL;
     double most_updates = HUGE_VAL;  ///< work of the run and its checks, after which the checks end
@@ -93,8 +92,8 @@ struct TrialKind {
 /// particles that are moved to either side, and shows how small movements grow.
 [[nodiscard]] bool may_buckle_unseen(const System& system, const MethodDef& method);
 
-/// Number of checks of a trial: `is_first` as in TrialKind.
-[[nodiscard]] std::size_t check_count(const System& system, const MethodDef& method, bool is_first);
+/// Number of checks of a trial of a method.
+[[nodiscard]] std::size_t check_count(const System& system, const MethodDef& method);
 
 /// Runs the trial's method and its checks side by side, the checks in turned coordinates, so that their
 /// rounding differs from the start on, and returns the trial with how far they agree. A run whose error is

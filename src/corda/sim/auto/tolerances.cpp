@@ -66,7 +66,8 @@ constexpr std::size_t kMaxImplicitDigits = 7;
 constexpr double kLooser = 2.0;               ///< errors are 0.05 to 0.4 of the tolerance
 constexpr double kLooserIfStretching = 1.25;  ///< up to 0.8 of it as a rule
 constexpr double kImplicitCheck = 0.25;
-constexpr double kMoreThanExplicit = 1.5;  ///< steps that they may take, because their checks are cheaper
+constexpr double kStepsOfImplicitCheck = 1.6;  ///< in parts of the run's
+constexpr double kMoreThanExplicit = 1.5;      ///< steps that they may take, because their checks are cheaper
 /// Work that an explicit step counts, by implicit ones, and how many more of them each digit takes.
 constexpr double kWorkOfExplicit = 1.75;
 constexpr double kMorePerDigit = 1.25;
@@ -91,18 +92,44 @@ double default_step_s(const System& system, const WorldDef& world, int order) {
     return fixed_step_s(solver->methods().front()).value_or(kNominalIntervalSeconds);
 }
 
-Candidate candidate(const MethodDef& method, const MethodDef& check, double effort, int digits) {
-    Candidate made{{}, effort, digits};
+Candidate candidate(const MethodDef& method, const MethodDef& check, double effort, double check_effort,
+                    int digits) {
+    Candidate made{{}, effort, check_effort, digits};
     made.trial.method = method;
     made.trial.check = check;
     return made;
 }
 
 /// Order of `rattle` that is tried first for nets that stretch: stability limits its steps and those of
-/// `exact` alike, which err far less and cost some four times as much.
+/// `exact` alike, which err far less.
 constexpr int kCheapOrder = 2;
-/// Work of its run, in updates of a particle, up to which it is not tried: some 30 ms.
+/// Work of its run in parts of that of `exact`.
+constexpr double kCheapEffort = 0.4;
+/// Steps of all particles in its run up to which it is not tried: some 10 ms.
 constexpr double kTooCheap = 6e5;
+/// Where strings come taut, errors of `exact` are of order 2 as well, and each kink costs several steps:
+/// cloths of 15 x 15 to 50 x 50 strings take 60 to 200 times as long at 1e-7. So these steps are tried before
+/// it, each a third of the last.
+constexpr int kTrialsWithKinks = 4;
+constexpr double kCheapEffortWithKinks = 0.01;
+
+void add_cheap_trials(std::vector<Candidate>& trials, double step_s, bool kinks, double check_tolerance,
+                      int digits) {
+    const auto cheap = [](double s, double share) {
+        return RattleDef{kCheapOrder, s, share * RattleDef{}.guard};
+    };
+    if (!kinks) {
+        trials.push_back(candidate(cheap(step_s, 1.0), ExactDef{check_tolerance}, kCheapEffort, 1.0, digits));
+        return;
+    }
+    double share = 1.0;
+    for (int i = 0; i < kTrialsWithKinks; ++i, share *= kCheckStep) {
+        const double effort = kCheapEffortWithKinks / share;
+        trials.push_back(candidate(cheap(share * step_s, share),
+                                   cheap(kCheckStep * share * step_s, kCheckStep * share), effort,
+                                   effort / kCheckStep, digits + i));
+    }
+}
 
 }  // namespace
 
@@ -148,24 +175,28 @@ std::vector<Candidate> exact_trials(const System& system, const WorldDef& world,
         if (!(steps_1_s < explicit_1_s)) break;
         trials.push_back(candidate(ExactDef{kTolerance[i], true},
                                    ExactDef{kImplicitCheck * kTolerance[i], true}, steps_1_s,
-                                   static_cast<int>(i)));
+                                   kStepsOfImplicitCheck * steps_1_s, static_cast<int>(i)));
         trials.back().most_steps_1_s = kMoreThanExplicit * explicit_1_s;
     }
     if (is_net && !is_rigid_net && !refusal(system, world, RattleDef{kCheapOrder}, kNominalIntervalSeconds)) {
         const double step_s = default_step_s(system, world, kCheapOrder);
-        const std::size_t check = std::min(digits + kNextDigits, tightest.check);
-        if (end_s / step_s * static_cast<double>(system.particle_count()) > kTooCheap)
-            trials.push_back(candidate(RattleDef{kCheapOrder, step_s}, ExactDef{kTolerance[check]}, 1.0,
-                                       static_cast<int>(digits) - 1));
+        if (end_s / step_s * static_cast<double>(system.particle_count()) > kTooCheap) {
+            const auto cheap_digits = static_cast<int>(digits);
+            // Stability limits the steps of both: `exact` costs no more at a tolerance that errs less.
+            digits = std::min(digits + kNextDigits, tightest.run);
+            add_cheap_trials(trials, step_s, has_kinks(system), kTolerance[digits], cheap_digits);
+        }
     }
     const bool has_implicit = !trials.empty() && is_implicit(trials.front().trial.method);
     double effort = has_implicit ? kWorkOfExplicit * explicit_1_s : 1.0;
     const double more = has_implicit ? kMorePerDigit * kMorePerDigit : 1.0;
     for (;; digits = std::min(digits + kNextDigits, tightest.run), effort *= more) {
-        const std::size_t check = digits + (is_rigid_net ? kNetCheckDigits : kCheckDigits);
-        trials.push_back(candidate(ExactDef{kTolerance[digits]},
-                                   ExactDef{kTolerance[std::min(check, tightest.check)]}, effort,
-                                   static_cast<int>(digits)));
+        const std::size_t check =
+            std::min(digits + (is_rigid_net ? kNetCheckDigits : kCheckDigits), tightest.check);
+        // Of order 8.
+        const double check_effort = std::pow(10.0, static_cast<double>(check - digits) / 8.0) * effort;
+        trials.push_back(candidate(ExactDef{kTolerance[digits]}, ExactDef{kTolerance[check]}, effort,
+                                   check_effort, static_cast<int>(digits)));
         if (digits == tightest.run) return trials;
     }
 }
@@ -183,11 +214,12 @@ std::vector<Candidate> graph_trials(const System& system, const WorldDef& world,
             stable_s = default_step_s(system, world, order);
         }
         const double step_s = stable_s / static_cast<double>(1 << rung.halvings);
-        trials.push_back(candidate(RattleDef{rung.order, step_s},
-                                   RattleDef{std::min(rung.order + 2, RattleDef::kOrders.back()),
-                                             kCheckStep * step_s, kCheckStep * RattleDef{}.guard},
-                                   stages_of(rung.order) / step_s,
-                                   kDigits * static_cast<int>(trials.size())));
+        const int check_order = std::min(rung.order + 2, RattleDef::kOrders.back());
+        trials.push_back(
+            candidate(RattleDef{rung.order, step_s},
+                      RattleDef{check_order, kCheckStep * step_s, kCheckStep * RattleDef{}.guard},
+                      stages_of(rung.order) / step_s, stages_of(check_order) / (kCheckStep * step_s),
+                      kDigits * static_cast<int>(trials.size())));
     }
     return trials;
 }

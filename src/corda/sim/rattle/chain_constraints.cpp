@@ -20,6 +20,8 @@ constexpr int kMaxNewtonSteps = 20;
 /// A chain between two pins counts as straight if the last pivot of its matrix is below this share of the
 /// diagonal: angles of about 1e-6 radians. A straight chain leaves the square of rounding, 1e-32.
 constexpr double kStraightPivot = 1e-12;
+/// Particles that a stage moves per update of count_work(), with the forces of two bars that stretch each.
+constexpr std::size_t kParticlesPerUpdate = 4;
 
 }  // namespace
 
@@ -188,7 +190,7 @@ void ChainConstraints::add_total(const Chain& chain, Motion& motion) const {
 
 bool ChainConstraints::move(const Stage& stage, Motion& motion, std::span<double> impulse) {
     kick(bars_, stage, motion);
-    count_work(1 + motion.x_m.size());
+    count_work(1 + motion.x_m.size() / kParticlesPerUpdate + links().size());
     for (const Chain& chain : chains_) {
         if (!meet_lengths(chain, stage.span_s, motion, impulse.data() + chain.first_link)) return false;
     }
@@ -197,7 +199,7 @@ bool ChainConstraints::move(const Stage& stage, Motion& motion, std::span<double
 }
 
 bool ChainConstraints::solve(const Motion& motion, std::span<double> right) {
-    count_work(1 + motion.x_m.size());
+    count_work(1 + links().size());
     bool is_finite = true;
     for (const Chain& chain : chains_) {
         const double* const w = bars_.inverse_mass_1_kg.data() + chain.first_particle;
