@@ -22,7 +22,7 @@ inline std::uint64_t work_done() {
     return detail::work_before_check + detail::work_since_check;
 }
 
-/// Counts work in updates of one particle, about 100 ns each, and now and then calls check_cancelled().
+/// Counts work in updates of one particle, 50 to 100 ns each, and now and then calls check_cancelled().
 inline void count_work(std::uint64_t updates) {
     detail::work_since_check += updates;
     if (detail::work_since_check >= kUpdatesPerCheck) check_cancelled();

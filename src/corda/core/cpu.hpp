@@ -22,7 +22,7 @@
 #else
 #define CORDA_AVX2_CLONES
 #endif
-/// A function that is compiled for AVX2 where a function for AVX2 calls it.
+/// Inlines a function into its callers; where one of them is compiled for AVX2, so is the function.
 #define CORDA_INLINE [[gnu::always_inline]] inline
 
 /// Before a loop none of whose iterations reads what another writes, for loops over more arrays than a

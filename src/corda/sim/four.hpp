@@ -28,10 +28,11 @@ CORDA_INLINE AnyFour& any_four(double* x) {
     return *reinterpret_cast<AnyFour*>(x);
 }
 
-/// A number of rows that fills whole Fours, and the first row of the Four that has this one.
+/// The least number of rows that fills whole Fours and has room for `rows`.
 [[nodiscard]] constexpr std::size_t up_to_four(std::size_t rows) {
     return (rows + kFour - 1) / kFour * kFour;
 }
+/// The first row of the Four that `row` belongs to.
 [[nodiscard]] constexpr std::size_t down_to_four(std::size_t row) {
     return row / kFour * kFour;
 }

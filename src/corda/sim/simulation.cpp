@@ -94,6 +94,8 @@ double Simulation::energy_change_j() const {
 void Simulation::set_outputs(const StateFields& fields) {
     if (fields == fields_) return;
     fields_ = fields;
+    if (!fields_.velocities) state_.vx_m_s.clear(), state_.vy_m_s.clear();
+    if (!fields_.tensions) state_.tension_n.clear();
     if (fields_.tensions) find_tensions();
     read();
 }

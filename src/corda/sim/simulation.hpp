@@ -43,7 +43,7 @@ struct Energy {
     [[nodiscard]] double potential_j() const { return weight_j + elastic_j; }
 };
 
-/// The largest figures of a run over all requested times.
+/// The steps of a run, and its largest figures over all requested times.
 struct Diagnostics {
     std::uint64_t steps = 0;
     Figures largest;
@@ -90,7 +90,7 @@ class Simulation {
     [[nodiscard]] const System& system() const { return system_; }
     /// Figures of the current state.
     [[nodiscard]] const Figures& figures() const { return figures_; }
-    /// Up to the last advance_to().
+    /// Up to the last advance_to() that returned Status::kOk; the next one changes what the reference shows.
     [[nodiscard]] const Diagnostics& diagnostics() const { return diagnostics_; }
     /// Steps taken so far, also during an advance_to() or pass().
     [[nodiscard]] std::uint64_t steps() const;

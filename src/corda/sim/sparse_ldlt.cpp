@@ -80,7 +80,8 @@ struct Front {
     double* inverse_pivot;
 };
 
-/// Subtracts kColumns columns times kTargets factors each from as many targets, for whole Fours of rows.
+/// Subtracts from each of kTargets columns kColumns columns, one after the other, each times a factor, in
+/// whole Fours of rows.
 template <std::uint32_t kColumns, std::uint32_t kTargets>
 CORDA_INLINE void subtract(const double* from, std::size_t stride, const double (*factor)[kTargets],
                            std::size_t begin, std::size_t end, double* to, std::size_t to_stride) {
@@ -95,8 +96,8 @@ CORDA_INLINE void subtract(const double* from, std::size_t stride, const double 
     }
 }
 
-/// Eliminates kColumns columns, which have been subtracted from by those before, from kTargets later ones:
-/// row `row` of them begins the targets' diagonals.
+/// Subtracts kColumns columns, from which those before have been subtracted, from kTargets later ones. The
+/// diagonal of the first of these is in row `row`.
 template <std::uint32_t kColumns, std::uint32_t kTargets>
 CORDA_INLINE void eliminate_from(const Front& front, std::uint32_t first, std::uint32_t row) {
     const auto& [block, value, update, pivot, inverse_pivot] = front;
@@ -132,19 +133,22 @@ CORDA_INLINE void eliminate_columns(const Front& front, std::uint32_t first) {
     if (row < block.columns + block.below) eliminate_from<kColumns, 1>(front, first, row);
 }
 
-/// Replaces the columns of a block by those of L below the diagonal.
-CORDA_AVX2_CLONES void eliminate(const Front& front) {
-    const Block& block = front.block;
-    std::uint32_t c = 0;
-    for (; c + kColumnsAtATime <= block.columns; c += kColumnsAtATime)
-        eliminate_columns<kColumnsAtATime>(front, c);
-    if (block.columns - c == 3) eliminate_columns<3>(front, c);
-    if (block.columns - c == 2) eliminate_columns<2>(front, c);
-    if (block.columns - c == 1) eliminate_columns<1>(front, c);
-    for (c = 0; c < block.columns; ++c) {
-        double* const column = front.value + c * block.stride;
-        for (std::size_t r = down_to_four(c); r < block.stride; r += kFour)
-            any_four(column + r).value *= front.inverse_pivot[c];
+/// Eliminates up to kColumnsAtATime columns of a block from those that follow.
+CORDA_AVX2_CLONES void eliminate(const Front& front, std::uint32_t first) {
+    const std::uint32_t columns = front.block.columns - first;
+    if (columns >= kColumnsAtATime) eliminate_columns<kColumnsAtATime>(front, first);
+    if (columns == 3) eliminate_columns<3>(front, first);
+    if (columns == 2) eliminate_columns<2>(front, first);
+    if (columns == 1) eliminate_columns<1>(front, first);
+}
+
+/// Divides the columns of a block by their pivots: below the diagonal, they are those of L then.
+CORDA_AVX2_CLONES void divide_by_pivots(const Front& front) {
+    const std::size_t stride = front.block.stride;
+    for (std::uint32_t c = 0; c < front.block.columns; ++c) {
+        double* const column = front.value + c * stride;
+        const double inverse = front.inverse_pivot[c];
+        for (std::size_t r = down_to_four(c); r < stride; r += kFour) any_four(column + r).value *= inverse;
     }
 }
 
@@ -251,7 +255,7 @@ void SparseLdlt::find_blocks(const Eigen::SparseMatrix<double>& lower) {
         row_.resize(block.begin);
         row_.insert(row_.end(), own.begin(), own.end());
         row_.resize(block.begin + up_to_four(own.size()), k);
-        if (k > 0 && !follows) rows[k - 1] = {};
+        if (k > 0) rows[k - 1] = {};
         if (!own.empty()) {
             std::vector<std::uint32_t>& parent = rows[own.front()];
             parent.insert(parent.end(), own.begin() + 1, own.end());
@@ -317,11 +321,15 @@ bool SparseLdlt::factorise(const double* entries) {
     for (const Block& block : blocks_) {
         add_updates(block);
         double* const pivot = pivot_.data() + block.first;
-        eliminate({block, value_.data() + block.value, stack_[block.stack].data() + block.update, pivot,
-                   inverse_pivot_.data() + block.first});
+        const Front front{block, value_.data() + block.value, stack_[block.stack].data() + block.update,
+                          pivot, inverse_pivot_.data() + block.first};
+        for (std::uint32_t c = 0; c < block.columns; c += kColumnsAtATime) {
+            eliminate(front, c);
+            const std::uint64_t rows = block.columns - c + block.below;
+            count_work(1 + kColumnsAtATime * rows * rows / 2 / kProductsPerUpdate);
+        }
+        divide_by_pivots(front);
         if (std::find(pivot, pivot + block.columns, 0.0) != pivot + block.columns) return false;
-        const std::uint64_t rows = block.columns + block.below;
-        count_work(1 + block.columns * rows * rows / 2 / kProductsPerUpdate);
     }
     return true;
 }

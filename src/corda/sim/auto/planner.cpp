@@ -35,27 +35,42 @@ struct Failure {
 };
 
 /// Upper bound of the time by which trials reach farther than one that failed after `ran_s`, per digit: that
-/// in which its difference grew tenfold. Infinite if the difference has not grown much.
-double gain_by_growth_s(const System& system, const Trial& trial, double ran_s, double end_s) {
+/// in which its difference grew tenfold, and what it gained on the one before, with a frame. Infinite if
+/// neither shows it.
+double most_gain_s(const System& system, const Candidate& failed, const Candidate* before, double ran_s,
+                   const Timeline& timeline, double end_s) {
     constexpr double kDigitsOfHopeless = 1.2;
     // Than when it exceeded the tolerance: errors of chaotic motions grow in bursts.
     constexpr double kSlower = 4.0;
-    // Bars that come into line, and strings that come taut, part a run from its check in no time. Links that
-    // buckle in a second check may not buckle in explicit steps.
-    if (!std::holds_alternative<ExactDef>(trial.method) || has_kinks(system) || trial.diverged ||
-        ran_s >= end_s || may_buckle_unseen(system, trial.method))
-        return HUGE_VAL;
-    return kSlower / kDigitsOfHopeless * (ran_s - trial.reached_s);
+    const Trial& trial = failed.trial;
+    // Links that buckle in a second check may not buckle in explicit steps.
+    if (may_buckle_unseen(system, trial.method)) return HUGE_VAL;
+    // Bars that come into line, and strings that come taut, part a run from its check in no time.
+    const bool shows_growth = std::holds_alternative<ExactDef>(trial.method) && !has_kinks(system) &&
+                              !trial.diverged && ran_s < end_s;
+    const double by_growth_s =
+        shows_growth ? kSlower / kDigitsOfHopeless * (ran_s - trial.reached_s) : HUGE_VAL;
+    // Implicit steps say little of explicit ones.
+    if (before == nullptr || is_implicit(before->trial.method) != is_implicit(trial.method))
+        return by_growth_s;
+    const double gained_s = std::max(0.0, trial.reached_s - before->trial.reached_s) + timeline.step_s();
+    return std::min(by_growth_s, gained_s / (failed.digits - before->digits));
 }
 
+/// The candidate that follows, if any does.
+struct Next {
+    std::optional<std::size_t> number;
+    bool is_too_dear = false;  ///< one would be worth its price, but exceeds what planning may still take
+};
+
 /// The trial to run after one that failed: the cheapest that is worth its price and expected to hold; if none
-/// is expected to hold, the one that is worth its price and expected to reach farthest. std::nullopt: none is
-/// worth its price, and the run of the failed trial is drawn.
+/// is expected to hold, the one that is worth its price and expected to reach farthest. Without a number,
+/// none is worth its price, and the run of the failed trial is drawn.
 ///
 /// A price is the work of the run to the end and of the checks up to the time that is expected to be reached,
 /// less that of ending the run that failed. All are in parts of a whole run of the method that failed.
-std::optional<std::size_t> next_trial(const System& system, const std::vector<Candidate>& candidates,
-                                      const Failure& failure, double end_s) {
+Next next_trial(const System& system, const std::vector<Candidate>& candidates, const Failure& failure,
+                double end_s) {
     const auto expected_s = [&](const Candidate& next) {
         const int digits = next.digits - candidates[failure.number].digits;
         const double reached_s = candidates[failure.number].trial.reached_s;
@@ -79,24 +94,28 @@ std::optional<std::size_t> next_trial(const System& system, const std::vector<Ca
     const auto fits = [&](const Candidate& other) {
         return !(whole_price(other) * failure.run_updates * end_s > failure.left_updates * failure.ran_s);
     };
+    bool is_too_dear = false;
     std::size_t next = failure.number + 1;
     while (next + 1 < candidates.size() && expected_s(candidates[next]) < end_s) ++next;
     for (; next > failure.number && next < candidates.size(); --next) {
         const Candidate& other = candidates[next];
-        if (!fits(other)) continue;
         const double hoped_s = expected_s(other);
         const double price = whole_price(other) - (1.0 - failure.ran_s / end_s);
         const double worth =
             hoped_s < end_s ? kWorthOfAHorizon * (hoped_s - failed.trial.reached_s) / end_s : kWorthOfTheEnd;
         const bool is_small = hoped_s > failed.trial.reached_s && price * run_updates <= kSmallUpdates;
-        if (is_small || price <= worth) return next;
+        if (!is_small && !(price <= worth)) continue;
+        if (fits(other)) return {next, false};
+        is_too_dear = true;
     }
     const auto* exact = std::get_if<ExactDef>(&failed.trial.method);
-    if (exact == nullptr || exact->implicit || exact->tolerance <= kLooseTolerance) return std::nullopt;
-    for (next = failure.number + 1; next < candidates.size(); ++next)
-        if (std::get<ExactDef>(candidates[next].trial.method).tolerance <= kLooseTolerance)
-            return fits(candidates[next]) ? std::optional(next) : std::nullopt;
-    return std::nullopt;
+    if (exact == nullptr || exact->implicit || exact->tolerance <= kLooseTolerance) return {{}, is_too_dear};
+    for (next = failure.number + 1; next < candidates.size(); ++next) {
+        if (std::get<ExactDef>(candidates[next].trial.method).tolerance > kLooseTolerance) continue;
+        if (fits(candidates[next])) return {next, false};
+        break;
+    }
+    return {{}, is_too_dear};
 }
 
 /// Records the run of a plan's method.
@@ -159,7 +178,8 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
     const double end_s = def.timeline.time_s(def.timeline.size() - 1);
     double left_updates = def.share * def.most_updates();
     for (const Trial& trial : plan.trials) left_updates -= trial.updates;
-    const auto before = static_cast<std::ptrdiff_t>(plan.trials.size());
+    const auto first = static_cast<std::ptrdiff_t>(plan.trials.size());
+    Next next;
     std::optional<std::size_t> last;
     std::size_t last_ended = 0;  // of plan.trials
     for (std::optional<std::size_t> i = 0; i;) {
@@ -169,23 +189,15 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
         kind.most_updates = left_updates;
         kind.most_steps_1_s = candidates[*i].most_steps_1_s;
         kind.first_steps = kShortSteps + kind.most_steps_1_s * def.timeline.step_s();
-        std::optional<std::size_t> next;
+        next = {};
         kind.is_last = [&](const Trial& failed, double ran_s, double run_updates) {
             trial = failed;
-            Failure failure{*i, ran_s, gain_by_growth_s(system, failed, ran_s, end_s), run_updates,
-                            left_updates - failed.updates};
-            // Those with implicit steps say little of others.
-            if (last && is_implicit(candidates[*last].trial.method) == is_implicit(trial.method) &&
-                !may_buckle_unseen(system, trial.method)) {
-                // Frames are a grid, and may be sparse.
-                const double gained_s = std::max(0.0, failed.reached_s - candidates[*last].trial.reached_s) +
-                                        def.timeline.step_s();
-                const int digits = candidates[*i].digits - candidates[*last].digits;
-                failure.gain_s = std::min(failure.gain_s, gained_s / digits);
-            }
-            next = next_trial(system, candidates, failure, end_s);
-            is_too_dear = !next && run_updates * (end_s - ran_s) > def.most_updates_of_run() * ran_s;
-            return !next && !is_too_dear;
+            const Candidate* const before = last ? &candidates[*last] : nullptr;
+            const double gain_s = most_gain_s(system, candidates[*i], before, ran_s, def.timeline, end_s);
+            next = next_trial(system, candidates,
+                              {*i, ran_s, gain_s, run_updates, left_updates - failed.updates}, end_s);
+            is_too_dear = !next.number && run_updates * (end_s - ran_s) > def.most_updates_of_run() * ran_s;
+            return !next.number && !is_too_dear;
         };
         plan.method = trial.method;
         trial = run_trial(system, world, def, kind, trial, recording);
@@ -199,19 +211,21 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
             go_back_to(last_ended, system, world, def, plan, recording);
             break;
         }
-        while (!ended && (!next || is_implicit(candidates[*next].trial.method))) next = next.value_or(*i) + 1;
+        while (!ended && (!next.number || is_implicit(candidates[*next.number].trial.method)))
+            next.number = next.number.value_or(*i) + 1;
         if (has_come_into_line(system, trial)) break;
         if (ended) last = i, last_ended = plan.trials.size() - 1;
-        i = next;
+        i = next.number;
     }
     if (plan.trials.back().unchecked) {
         const auto farthest =
-            std::ranges::max_element(plan.trials.begin() + before, plan.trials.end(), {}, &Trial::reached_s);
+            std::ranges::max_element(plan.trials.begin() + first, plan.trials.end(), {}, &Trial::reached_s);
         if (farthest->reached_s > plan.trials.back().reached_s)
             go_back_to(static_cast<std::size_t>(farthest - plan.trials.begin()), system, world, def, plan,
                        recording);
     }
     take_figures(system, plan.trials.back(), plan);
+    plan.unchecked = plan.unchecked || (plan.horizon_s && next.is_too_dear);
     plan.diverges = recording.size() < def.timeline.size();
 }
 

@@ -184,7 +184,7 @@ constexpr int kRefinements = 4;
 constexpr double kRefinement = 0.1;
 
 /// Cost of a step per link, in updates of count_work().
-constexpr std::uint64_t kUpdatesPerLink = 8;
+constexpr std::uint64_t kUpdatesPerLink = 4;
 
 /// Less than a rounding error of the angular velocities, because it bounds the last term alone.
 constexpr double kMinTerm = 1e-18;
