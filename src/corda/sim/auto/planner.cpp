@@ -35,8 +35,8 @@ struct Failure {
 };
 
 /// Upper bound of the time by which trials reach farther than one that failed after `ran_s`, per digit: that
-/// in which its difference grew tenfold, and what it gained on the one before, with a frame. Infinite if
-/// neither shows it.
+/// in which its difference grew tenfold, and what it reached beyond the trial before, and a frame. Infinite
+/// if neither shows it.
 double most_gain_s(const System& system, const Candidate& failed, const Candidate* before, double ran_s,
                    const Timeline& timeline, double end_s) {
     constexpr double kDigitsOfHopeless = 1.2;
@@ -64,8 +64,8 @@ struct Next {
 };
 
 /// The trial to run after one that failed: the cheapest that is worth its price and expected to hold; if none
-/// is expected to hold, the one that is worth its price and expected to reach farthest. Without a number,
-/// none is worth its price, and the run of the failed trial is drawn.
+/// is expected to hold, the one that is worth its price and expected to reach farthest. If none
+/// is worth its price, the run of the failed trial is drawn.
 ///
 /// A price is the work of the run to the end and of the checks up to the time that is expected to be reached,
 /// less that of ending the run that failed. All are in parts of a whole run of the method that failed.

@@ -270,8 +270,8 @@ bool correct(BarGraph& graph, double span_s, const Motion& motion) {
     return met;
 }
 
-/// Entries in the factors of a matrix that is not symmetric per update of count_work(): each takes 20 to 30 ns
-/// (40 to 19 800 bars).
+/// Entries in the factors of a matrix that is not symmetric per update of count_work(): each takes 20 to 30
+/// ns (40 to 19 800 bars).
 constexpr std::uint64_t kEntriesPerUpdate = 2;
 
 /// Completes a stage after its kick by the full Newton method, whose matrix follows the bars to either side
