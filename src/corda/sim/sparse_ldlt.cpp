@@ -238,7 +238,7 @@ void SparseLdlt::find_blocks(const Eigen::SparseMatrix<double>& lower) {
     for (std::uint32_t k = 0; k < size; ++k) {
         std::vector<std::uint32_t>& own = rows[k];
         std::ranges::sort(own);
-        own.erase(std::ranges::unique(own).begin(), own.end());
+        own.erase(std::unique(own.begin(), own.end()), own.end());
         const bool follows = k > 0 && !rows[k - 1].empty() && rows[k - 1].front() == k;
         const std::size_t before = follows ? blocks_.back().columns : 0;
         const std::size_t more = follows ? before * (own.size() + 1 - rows[k - 1].size()) : 0;
