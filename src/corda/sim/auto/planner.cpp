@@ -34,9 +34,9 @@ struct Failure {
     double left_updates;  ///< work that planning may still take
 };
 
-/// Upper bound of the time by which trials reach farther than one that failed after `ran_s`, per digit: that
-/// in which its difference grew tenfold, and what it reached beyond the trial before, and a frame. Infinite
-/// if neither shows it.
+/// Upper bound of the time by which trials reach farther than one that failed after `ran_s`, per digit: the
+/// smaller one of that in which its difference grew tenfold and of that by which it reached beyond the trial
+/// before, plus a frame. Infinite if neither is known.
 double most_gain_s(const System& system, const Candidate& failed, const Candidate* before, double ran_s,
                    const Timeline& timeline, double end_s) {
     constexpr double kDigitsOfHopeless = 1.2;
@@ -53,6 +53,7 @@ double most_gain_s(const System& system, const Candidate& failed, const Candidat
     // Implicit steps say little of explicit ones.
     if (before == nullptr || is_implicit(before->trial.method) != is_implicit(trial.method))
         return by_growth_s;
+    // Frames are a grid, and may be sparse.
     const double gained_s = std::max(0.0, trial.reached_s - before->trial.reached_s) + timeline.step_s();
     return std::min(by_growth_s, gained_s / (failed.digits - before->digits));
 }
@@ -60,12 +61,12 @@ double most_gain_s(const System& system, const Candidate& failed, const Candidat
 /// The candidate that follows, if any does.
 struct Next {
     std::optional<std::size_t> number;
-    bool is_too_dear = false;  ///< one would be worth its price, but exceeds what planning may still take
+    bool exceeds_budget = false;  ///< a trial would be worth its price, but not fit into the budget
 };
 
 /// The trial to run after one that failed: the cheapest that is worth its price and expected to hold; if none
-/// is expected to hold, the one that is worth its price and expected to reach farthest. If none
-/// is worth its price, the run of the failed trial is drawn.
+/// is expected to hold, the one that is worth its price and expected to reach farthest. If no trial is worth
+/// its price, the run of the failed one is drawn.
 ///
 /// A price is the work of the run to the end and of the checks up to the time that is expected to be reached,
 /// less that of ending the run that failed. All are in parts of a whole run of the method that failed.
@@ -94,7 +95,7 @@ Next next_trial(const System& system, const std::vector<Candidate>& candidates, 
     const auto fits = [&](const Candidate& other) {
         return !(whole_price(other) * failure.run_updates * end_s > failure.left_updates * failure.ran_s);
     };
-    bool is_too_dear = false;
+    bool exceeds_budget = false;
     std::size_t next = failure.number + 1;
     while (next + 1 < candidates.size() && expected_s(candidates[next]) < end_s) ++next;
     for (; next > failure.number && next < candidates.size(); --next) {
@@ -106,16 +107,17 @@ Next next_trial(const System& system, const std::vector<Candidate>& candidates, 
         const bool is_small = hoped_s > failed.trial.reached_s && price * run_updates <= kSmallUpdates;
         if (!is_small && !(price <= worth)) continue;
         if (fits(other)) return {next, false};
-        is_too_dear = true;
+        exceeds_budget = true;
     }
     const auto* exact = std::get_if<ExactDef>(&failed.trial.method);
-    if (exact == nullptr || exact->implicit || exact->tolerance <= kLooseTolerance) return {{}, is_too_dear};
+    if (exact == nullptr || exact->implicit || exact->tolerance <= kLooseTolerance)
+        return {{}, exceeds_budget};
     for (next = failure.number + 1; next < candidates.size(); ++next) {
         if (std::get<ExactDef>(candidates[next].trial.method).tolerance > kLooseTolerance) continue;
         if (fits(candidates[next])) return {next, false};
         break;
     }
-    return {{}, is_too_dear};
+    return {{}, exceeds_budget};
 }
 
 /// Records the run of a plan's method.
@@ -225,7 +227,7 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
                        recording);
     }
     take_figures(system, plan.trials.back(), plan);
-    plan.unchecked = plan.unchecked || (plan.horizon_s && next.is_too_dear);
+    plan.unchecked = plan.unchecked || (plan.horizon_s && next.exceeds_budget);
     plan.diverges = recording.size() < def.timeline.size();
 }
 

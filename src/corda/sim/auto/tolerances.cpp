@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "corda/core/cancel.hpp"
+#include "corda/sim/exact/dop853.hpp"
 #include "corda/sim/exact/elastic_dynamics.hpp"
 #include "corda/sim/rattle/rattle.hpp"
 #include "corda/sim/solver.hpp"
@@ -108,11 +109,12 @@ constexpr double kCheapEffort = 0.4;
 /// Steps of all particles in its run up to which it is not tried: some 10 ms.
 constexpr double kTooCheap = 6e5;
 /// Where strings come taut, errors of `exact` are of order 2 as well, and each kink costs several steps:
-/// cloths of 15 x 15 to 50 x 50 strings take 60 to 200 times as long at 1e-7. So these steps are tried before
-/// it, each a third of the last.
+/// cloths of 15 x 15 to 50 x 50 strings take 60 to 200 times as long at 1e-7 as by order 2 of `rattle`, which
+/// is therefore tried at this many steps, each a third of the last.
 constexpr int kTrialsWithKinks = 4;
 constexpr double kCheapEffortWithKinks = 0.01;
 
+/// Adds the trials that come before those of `exact`, with these digits and more.
 void add_cheap_trials(std::vector<Candidate>& trials, double step_s, bool kinks, double check_tolerance,
                       int digits) {
     const auto cheap = [](double s, double share) {
@@ -193,8 +195,7 @@ std::vector<Candidate> exact_trials(const System& system, const WorldDef& world,
     for (;; digits = std::min(digits + kNextDigits, tightest.run), effort *= more) {
         const std::size_t check =
             std::min(digits + (is_rigid_net ? kNetCheckDigits : kCheckDigits), tightest.check);
-        // Of order 8.
-        const double check_effort = std::pow(10.0, static_cast<double>(check - digits) / 8.0) * effort;
+        const double check_effort = eighth_root(kTolerance[digits] / kTolerance[check]) * effort;
         trials.push_back(candidate(ExactDef{kTolerance[digits]}, ExactDef{kTolerance[check]}, effort,
                                    check_effort, static_cast<int>(digits)));
         if (digits == tightest.run) return trials;

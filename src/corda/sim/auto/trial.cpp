@@ -9,6 +9,7 @@
 #include "corda/core/cancel.hpp"
 #include "corda/sim/auto/tolerances.hpp"
 #include "corda/sim/defs.hpp"
+#include "corda/sim/exact/dop853.hpp"
 #include "corda/sim/exact/string/part.hpp"
 #include "corda/sim/rattle/constraint_solver.hpp"
 #include "corda/sim/solver.hpp"
@@ -145,10 +146,9 @@ double hidden_m(const System& system, const Trial& trial) {
     if (run != nullptr && run->implicit)
         return (vibrates ? kOfStretching : kOfImplicit) * run->tolerance * largest_length_m(system);
     if (run == nullptr || check == nullptr || !vibrates) return 0.0;
-    // As many as it takes if the tolerance limits the steps, of order 8. Square roots are the same
-    // everywhere.
+    // As many as it takes if the tolerance limits the steps, of order 8.
     const double ratio = run->tolerance / check->tolerance;
-    const double steps = std::sqrt(std::sqrt(std::sqrt(ratio))) * static_cast<double>(trial.steps);
+    const double steps = eighth_root(ratio) * static_cast<double>(trial.steps);
     return static_cast<double>(trial.check_steps) >= kResolved * steps
                ? 0.0
                : check->tolerance * largest_length_m(system);

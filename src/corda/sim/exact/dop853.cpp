@@ -204,11 +204,6 @@ void add(const Terms<Count> terms, std::size_t size, const double* from, double*
     for (std::size_t i = 0; i < size; ++i) out[i] = from[i] + sum(terms, i);
 }
 
-/// From square roots, because std::pow is rounded differently by different C libraries.
-double eighth_root(double x) {
-    return std::sqrt(std::sqrt(std::sqrt(x)));
-}
-
 }  // namespace
 
 Dop853::Dop853(Ode& ode, std::vector<double> start, std::vector<ErrorScale> scales,

@@ -40,6 +40,11 @@ class Ode : NonCopyable {
     virtual void project(double* y) { static_cast<void>(y); }
 };
 
+/// From square roots, because std::pow is rounded differently by different C libraries.
+inline double eighth_root(double x) {
+    return std::sqrt(std::sqrt(std::sqrt(x)));
+}
+
 /// For Ode::project(): makes vectors unit vectors, all x of which come first, then all y.
 inline void make_unit_vectors(std::size_t count, double* xy) {
     double* __restrict const x = xy;
