@@ -16,14 +16,6 @@
 namespace corda::sim {
 namespace {
 
-/// Rough work of a step in updates of a particle.
-double updates_of_step(const System& system, const MethodDef& method) {
-    constexpr double kOfExact = 8.0;
-    const auto* rattle = std::get_if<RattleDef>(&method);
-    return (rattle == nullptr ? kOfExact : stages_of(rattle->order)) *
-           static_cast<double>(system.particle_count());
-}
-
 /// A trial that failed, and the bound on others that it gives.
 struct Failure {
     std::size_t number;  ///< among the candidates
@@ -85,15 +77,14 @@ Next next_trial(const System& system, const std::vector<Candidate>& candidates, 
     const double work_of_check = (failed.trial.updates / std::max(1.0, failure.run_updates) - 1.0) /
                                  std::max(1.0, failed.trial.passes - 1.0);
     const double dearer = work_of_check * failed.effort / failed.check_effort;  // checks than expected
-    const double run_updates = updates_of_step(system, failed.trial.method) *
-                               static_cast<double>(failed.trial.steps) * end_s / failure.ran_s;
+    const double whole_updates = failure.run_updates * end_s / failure.ran_s;
     const auto whole_price = [&](const Candidate& other) {
         const auto checks = static_cast<double>(check_count(system, other.trial.method));
         return (other.effort + checks * dearer * other.check_effort * expected_s(other) / end_s) /
                failed.effort;
     };
     const auto fits = [&](const Candidate& other) {
-        return !(whole_price(other) * failure.run_updates * end_s > failure.left_updates * failure.ran_s);
+        return !(whole_price(other) * whole_updates > failure.left_updates);
     };
     bool exceeds_budget = false;
     std::size_t next = failure.number + 1;
@@ -104,7 +95,7 @@ Next next_trial(const System& system, const std::vector<Candidate>& candidates, 
         const double price = whole_price(other) - (1.0 - failure.ran_s / end_s);
         const double worth =
             hoped_s < end_s ? kWorthOfAHorizon * (hoped_s - failed.trial.reached_s) / end_s : kWorthOfTheEnd;
-        const bool is_small = hoped_s > failed.trial.reached_s && price * run_updates <= kSmallUpdates;
+        const bool is_small = hoped_s > failed.trial.reached_s && price * whole_updates <= kSmallUpdates;
         if (!is_small && !(price <= worth)) continue;
         if (fits(other)) return {next, false};
         exceeds_budget = true;
