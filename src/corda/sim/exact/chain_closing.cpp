@@ -4,6 +4,9 @@
 #include <limits>
 #include <string>
 
+#include "corda/core/cpu.hpp"
+#include "corda/sim/four.hpp"
+
 namespace corda::sim {
 namespace {
 
@@ -11,8 +14,8 @@ namespace {
 /// are not determined.
 constexpr double kTaut = 1e-12;
 
-/// Newton steps that close a chain between two pins, all with the matrix of the first. Each step multiplies
-/// the gap by about its size relative to the chain, at most 1e-4.
+/// Most Newton steps that close a chain between two pins, all with the matrix of the first. Each step
+/// multiplies the gap by about its size relative to the chain, at most 1e-4.
 constexpr int kClosingSteps = 4;
 
 /// The symmetric 2 x 2 matrix for closing a chain, the sum of a_i p_i p_i^T, plus a small multiple of the
@@ -38,6 +41,59 @@ struct ClosingMatrix {
     }
 };
 
+/// Links between two pins, one entry each.
+struct Links {
+    std::size_t count;
+    const double* length_m;
+    double* c;  ///< directions
+    double* s;
+    double* omega_1_s;
+
+    /// Sum of a_i (c_i, s_i): where the chain ends.
+    [[nodiscard]] CORDA_AVX2_CLONES Vec2 end_m() const {
+        Four x{};
+        Four y{};
+        std::size_t i = 0;
+        for (; i + kFour <= count; i += kFour) {
+            const Four a = any_four(length_m + i).value;
+            x += a * any_four(c + i).value;
+            y += a * any_four(s + i).value;
+        }
+        Vec2 end{(x[0] + x[1]) + (x[2] + x[3]), (y[0] + y[1]) + (y[2] + y[3])};
+        for (; i < count; ++i) end = end + length_m[i] * Vec2{c[i], s[i]};
+        return end;
+    }
+    /// Sum of a_i omega_i (-s_i, c_i).
+    [[nodiscard]] CORDA_AVX2_CLONES Vec2 end_velocity_m_s() const {
+        Four x{};
+        Four y{};
+        std::size_t i = 0;
+        for (; i + kFour <= count; i += kFour) {
+            const Four speed = any_four(length_m + i).value * any_four(omega_1_s + i).value;
+            x -= speed * any_four(s + i).value;
+            y += speed * any_four(c + i).value;
+        }
+        Vec2 end{(x[0] + x[1]) + (x[2] + x[3]), (y[0] + y[1]) + (y[2] + y[3])};
+        for (; i < count; ++i) end = end + (length_m[i] * omega_1_s[i]) * Vec2{-s[i], c[i]};
+        return end;
+    }
+    /// Turns each link by p_i . multiplier.
+    CORDA_AVX2_CLONES void turn(Vec2 multiplier) const {
+        const std::size_t links = count;
+        double* const cosine = c;
+        double* const sine = s;
+        CORDA_INDEPENDENT
+        for (std::size_t i = 0; i < links; ++i) {
+            const double angle = multiplier.y * cosine[i] - multiplier.x * sine[i];
+            const double x = cosine[i] - angle * sine[i];
+            const double y = sine[i] + angle * cosine[i];
+            const double inverse = 1.0 / std::sqrt(x * x + y * y);
+            cosine[i] = inverse * x;
+            sine[i] = inverse * y;
+        }
+    }
+};
+
 }  // namespace
 
 void refuse_taut_between_pins(double length_m, Vec2 span_m, std::size_t from, std::size_t to) {
@@ -57,36 +113,27 @@ Span span_at(const Chains& chains, const Chain& chain, double time_s) {
 }
 
 void close_between_pins(const Chains& chains, const Chain& chain, double time_s, double* y) {
-    const std::size_t links = chains.link_count();
-    const std::size_t end = chain.first_link + chain.link_count;
-    const auto direction = [&](std::size_t i) { return Vec2{y[i], y[links + i]}; };
+    double* const c = y + chain.first_link;
+    double* const s = c + chains.link_count();
+    const Links links{chain.link_count, chains.length_m.data() + chain.first_link, c, s,
+                      s + chains.link_count()};
     const auto [span_m, velocity_m_s] = span_at(chains, chain, time_s);
     if (dot(span_m, span_m) > chain.length_m * chain.length_m) {
-        y[chain.first_link] = std::numeric_limits<double>::quiet_NaN();
+        *c = std::numeric_limits<double>::quiet_NaN();
         return;
     }
     ClosingMatrix matrix;
-    for (std::size_t i = chain.first_link; i < end; ++i)
-        matrix.add(chains.length_m[i], left_of(direction(i)));
+    for (std::size_t i = 0; i < links.count; ++i) matrix.add(links.length_m[i], left_of({c[i], s[i]}));
+    const double rounding_m = std::numeric_limits<double>::epsilon() *
+                              std::sqrt(static_cast<double>(links.count)) * chain.length_m;
     for (int k = 0; k < kClosingSteps; ++k) {
-        Vec2 open = span_m;
-        for (std::size_t i = chain.first_link; i < end; ++i) open = open - chains.length_m[i] * direction(i);
-        const Vec2 multiplier = matrix.solve(open);
-        for (std::size_t i = chain.first_link; i < end; ++i) {
-            const Vec2 across = left_of(direction(i));
-            const Vec2 turned = direction(i) + dot(across, multiplier) * across;
-            const double inverse = 1.0 / length(turned.x, turned.y);
-            y[i] = inverse * turned.x;
-            y[links + i] = inverse * turned.y;
-        }
+        const Vec2 open_m = span_m - links.end_m();
+        if (k > 0 && length(open_m.x, open_m.y) <= rounding_m) break;
+        links.turn(matrix.solve(open_m));
     }
-    Vec2 open = velocity_m_s;
-    for (std::size_t i = chain.first_link; i < end; ++i) {
-        open = open - (chains.length_m[i] * y[2 * links + i]) * left_of(direction(i));
-    }
-    const Vec2 multiplier = matrix.solve(open);
-    for (std::size_t i = chain.first_link; i < end; ++i)
-        y[2 * links + i] += dot(left_of(direction(i)), multiplier);
+    const Vec2 multiplier = matrix.solve(velocity_m_s - links.end_velocity_m_s());
+    for (std::size_t i = 0; i < links.count; ++i)
+        links.omega_1_s[i] += dot(left_of({c[i], s[i]}), multiplier);
 }
 
 double spread(const Chains& chains, const Chain& chain, const double* y) {
