@@ -27,7 +27,7 @@ function mark(marked, choice) {
 
 // ---------------------------------------------------------------- the list
 
-function showList() {
+function showGroups() {
     const groups = new Map();
     pictures.forEach((picture, i) => {
         if (!groups.has(picture.group)) groups.set(picture.group, []);
@@ -92,14 +92,14 @@ function setView(i) {
 }
 
 function show(i) {
-    if (pictures.length === 0) return showList();
+    if (pictures.length === 0) return showGroups();
     at = Math.max(0, Math.min(pictures.length - 1, i));
     const picture = pictures[at];
     byId("title").textContent = `${picture.name}: ${picture.result}`;
     byId("cause").textContent = [picture.figures, picture.cause].filter(Boolean).join("; ");
     byId("accept").disabled = byId("accept-all").disabled = !picture.has_new;
     showPair();
-    showList();
+    showGroups();
 }
 
 // ---------------------------------------------------------------- decisions
@@ -114,7 +114,7 @@ function choose(choice) {
 function chooseAll() {
     const {group} = pictures[at];
     mark(pictures.filter((picture) => picture.group === group && picture.has_new && !picture.accepted), "accept");
-    showList();
+    showGroups();
 }
 
 async function apply() {
