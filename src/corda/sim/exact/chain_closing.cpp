@@ -124,8 +124,8 @@ void close_between_pins(const Chains& chains, const Chain& chain, double time_s,
     }
     ClosingMatrix matrix;
     for (std::size_t i = 0; i < links.count; ++i) matrix.add(links.length_m[i], left_of({c[i], s[i]}));
-    const double rounding_m = std::numeric_limits<double>::epsilon() *
-                              std::sqrt(static_cast<double>(links.count)) * chain.length_m;
+    const double rounding_m =
+        std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(links.count)) * chain.length_m;
     for (int k = 0; k < kClosingSteps; ++k) {
         const Vec2 open_m = span_m - links.end_m();
         if (k > 0 && length(open_m.x, open_m.y) <= rounding_m) break;
