@@ -48,51 +48,58 @@ struct Links {
     double* c;  ///< directions
     double* s;
     double* omega_1_s;
-
-    /// Sum of a_i (c_i, s_i): where the chain ends.
-    [[nodiscard]] CORDA_AVX2_CLONES Vec2 end_m() const {
-        Four x{};
-        Four y{};
-        std::size_t i = 0;
-        for (; i + kFour <= count; i += kFour) {
-            const Four a = any_four(length_m + i).value;
-            x += a * any_four(c + i).value;
-            y += a * any_four(s + i).value;
-        }
-        Vec2 end{(x[0] + x[1]) + (x[2] + x[3]), (y[0] + y[1]) + (y[2] + y[3])};
-        for (; i < count; ++i) end = end + length_m[i] * Vec2{c[i], s[i]};
-        return end;
-    }
-    /// Sum of a_i omega_i (-s_i, c_i).
-    [[nodiscard]] CORDA_AVX2_CLONES Vec2 end_velocity_m_s() const {
-        Four x{};
-        Four y{};
-        std::size_t i = 0;
-        for (; i + kFour <= count; i += kFour) {
-            const Four speed = any_four(length_m + i).value * any_four(omega_1_s + i).value;
-            x -= speed * any_four(s + i).value;
-            y += speed * any_four(c + i).value;
-        }
-        Vec2 end{(x[0] + x[1]) + (x[2] + x[3]), (y[0] + y[1]) + (y[2] + y[3])};
-        for (; i < count; ++i) end = end + (length_m[i] * omega_1_s[i]) * Vec2{-s[i], c[i]};
-        return end;
-    }
-    /// Turns each link by p_i . multiplier.
-    CORDA_AVX2_CLONES void turn(Vec2 multiplier) const {
-        const std::size_t links = count;
-        double* const cosine = c;
-        double* const sine = s;
-        CORDA_INDEPENDENT
-        for (std::size_t i = 0; i < links; ++i) {
-            const double angle = multiplier.y * cosine[i] - multiplier.x * sine[i];
-            const double x = cosine[i] - angle * sine[i];
-            const double y = sine[i] + angle * cosine[i];
-            const double inverse = 1.0 / std::sqrt(x * x + y * y);
-            cosine[i] = inverse * x;
-            sine[i] = inverse * y;
-        }
-    }
 };
+
+CORDA_INLINE double sum(const Four& of) {
+    return (of[0] + of[1]) + (of[2] + of[3]);
+}
+
+/// Sum of a_i (c_i, s_i): where the chain ends.
+CORDA_AVX2_CLONES Vec2 end_m(const Links& links) {
+    Four x{};
+    Four y{};
+    std::size_t i = 0;
+    for (; i + kFour <= links.count; i += kFour) {
+        const Four a = any_four(links.length_m + i).value;
+        x += a * any_four(links.c + i).value;
+        y += a * any_four(links.s + i).value;
+    }
+    Vec2 end{sum(x), sum(y)};
+    for (; i < links.count; ++i) end = end + links.length_m[i] * Vec2{links.c[i], links.s[i]};
+    return end;
+}
+
+/// Sum of a_i omega_i (-s_i, c_i).
+CORDA_AVX2_CLONES Vec2 end_velocity_m_s(const Links& links) {
+    Four x{};
+    Four y{};
+    std::size_t i = 0;
+    for (; i + kFour <= links.count; i += kFour) {
+        const Four speed = any_four(links.length_m + i).value * any_four(links.omega_1_s + i).value;
+        x -= speed * any_four(links.s + i).value;
+        y += speed * any_four(links.c + i).value;
+    }
+    Vec2 end{sum(x), sum(y)};
+    for (; i < links.count; ++i)
+        end = end + (links.length_m[i] * links.omega_1_s[i]) * Vec2{-links.s[i], links.c[i]};
+    return end;
+}
+
+/// Turns each link by p_i . multiplier.
+CORDA_AVX2_CLONES void turn(const Links& links, Vec2 multiplier) {
+    double* const c = links.c;
+    double* const s = links.s;
+    const std::size_t count = links.count;
+    CORDA_INDEPENDENT
+    for (std::size_t i = 0; i < count; ++i) {
+        const double angle = multiplier.y * c[i] - multiplier.x * s[i];
+        const double x = c[i] - angle * s[i];
+        const double y = s[i] + angle * c[i];
+        const double inverse = 1.0 / std::sqrt(x * x + y * y);
+        c[i] = inverse * x;
+        s[i] = inverse * y;
+    }
+}
 
 }  // namespace
 
@@ -127,11 +134,11 @@ void close_between_pins(const Chains& chains, const Chain& chain, double time_s,
     const double rounding_m =
         std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(links.count)) * chain.length_m;
     for (int k = 0; k < kClosingSteps; ++k) {
-        const Vec2 open_m = span_m - links.end_m();
+        const Vec2 open_m = span_m - end_m(links);
         if (k > 0 && length(open_m.x, open_m.y) <= rounding_m) break;
-        links.turn(matrix.solve(open_m));
+        turn(links, matrix.solve(open_m));
     }
-    const Vec2 multiplier = matrix.solve(velocity_m_s - links.end_velocity_m_s());
+    const Vec2 multiplier = matrix.solve(velocity_m_s - end_velocity_m_s(links));
     for (std::size_t i = 0; i < links.count; ++i)
         links.omega_1_s[i] += dot(left_of({c[i], s[i]}), multiplier);
 }
