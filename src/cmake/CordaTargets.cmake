@@ -18,9 +18,7 @@ target_compile_options(corda_options INTERFACE
     # Clang warns of each loop with CORDA_INDEPENDENT that it does not vectorise, as without optimisation.
     $<$<CXX_COMPILER_ID:Clang>:-Wno-pass-failed>
     # No fused multiply-add: the same scene must give the same bytes on every CPU and with every compiler.
-    -ffp-contract=off
-    # Nothing reads errno after a root, and loops with roots run in vector registers without it.
-    -fno-math-errno)
+    -ffp-contract=off)
 if(CORDA_WARNINGS_AS_ERRORS)
     target_compile_options(corda_options INTERFACE -Werror)
 endif()

@@ -86,18 +86,14 @@ CORDA_AVX2_CLONES Vec2 end_velocity_m_s(const Links& links) {
 }
 
 /// Turns each link by p_i . multiplier.
-CORDA_AVX2_CLONES void turn(const Links& links, Vec2 multiplier) {
-    double* const c = links.c;
-    double* const s = links.s;
-    const std::size_t count = links.count;
-    CORDA_INDEPENDENT
-    for (std::size_t i = 0; i < count; ++i) {
-        const double angle = multiplier.y * c[i] - multiplier.x * s[i];
-        const double x = c[i] - angle * s[i];
-        const double y = s[i] + angle * c[i];
-        const double inverse = 1.0 / std::sqrt(x * x + y * y);
-        c[i] = inverse * x;
-        s[i] = inverse * y;
+void turn(const Links& links, Vec2 multiplier) {
+    for (std::size_t i = 0; i < links.count; ++i) {
+        const Vec2 direction{links.c[i], links.s[i]};
+        const Vec2 across = left_of(direction);
+        const Vec2 turned = direction + dot(across, multiplier) * across;
+        const double inverse = 1.0 / length(turned.x, turned.y);
+        links.c[i] = inverse * turned.x;
+        links.s[i] = inverse * turned.y;
     }
 }
 
