@@ -93,6 +93,11 @@ double default_step_s(const System& system, const WorldDef& world, int order) {
     return fixed_step_s(solver->methods().front()).value_or(kNominalIntervalSeconds);
 }
 
+/// Stages of `rattle` of an order in a step.
+double stages_of(int order) {
+    return static_cast<double>(composition(order).stages.size());
+}
+
 Candidate candidate(const MethodDef& method, const MethodDef& check, double effort, double check_effort,
                     int digits) {
     Candidate made{{}, effort, check_effort, digits};
@@ -144,10 +149,6 @@ bool has_kinks(const System& system) {
     return std::ranges::any_of(system.bodies, [](const Body& body) {
         return body.material.is_string && body.material.compliance_1_n > 0.0;
     });
-}
-
-double stages_of(int order) {
-    return static_cast<double>(composition(order).stages.size());
 }
 
 ExactDef loosest_exact() {

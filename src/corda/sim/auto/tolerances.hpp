@@ -29,9 +29,6 @@ inline constexpr double kNominalIntervalSeconds = 1.0 / 60.0;
 /// True if the force of a bar has a kink: of strings that stretch.
 [[nodiscard]] bool has_kinks(const System& system);
 
-/// Stages of `rattle` of an order in a step.
-[[nodiscard]] double stages_of(int order);
-
 /// The loosest trial of `exact`.
 [[nodiscard]] ExactDef loosest_exact();
 

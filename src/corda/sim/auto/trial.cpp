@@ -19,11 +19,11 @@ namespace {
 
 /// Ratio of the error estimate of a run to its difference from a check. The error may exceed the difference
 /// by the check's own error, a sixth of it near rounding. Where strings come taut, `rattle` errs by chance
-/// less or more than its order says (200 cloths of strings: by 0.91 of three times the difference).
+/// less or more than its order says: by 2.7 differences at most in 200 cloths of strings.
 double estimate_per_difference(const System& system, const MethodDef& run) {
     constexpr double kUsual = 3.0;
-    constexpr double kWithChance = 6.0;
-    return std::holds_alternative<RattleDef>(run) && has_kinks(system) ? kWithChance : kUsual;
+    constexpr double kOfKinks = 6.0;
+    return std::holds_alternative<RattleDef>(run) && has_kinks(system) ? kOfKinks : kUsual;
 }
 
 /// The difference of two runs over time. The tolerance follows from the bounds of the whole motion and is

@@ -15,7 +15,8 @@ namespace {
 constexpr double kTaut = 1e-12;
 
 /// Most Newton steps that close a chain between two pins, all with the matrix of the first. Each step
-/// multiplies the gap by about its size relative to the chain, at most 1e-4.
+/// multiplies the gap by about its size relative to the chain, at most 1e-4 unless the links are nearly in
+/// one line. They end once the gap is that of rounding in the sum of the links.
 constexpr int kClosingSteps = 4;
 
 /// The symmetric 2 x 2 matrix for closing a chain, the sum of a_i p_i p_i^T, plus a small multiple of the
@@ -131,6 +132,7 @@ void close_between_pins(const Chains& chains, const Chain& chain, double time_s,
         std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(links.count)) * chain.length_m;
     for (int k = 0; k < kClosingSteps; ++k) {
         const Vec2 open_m = span_m - end_m(links);
+        // The first also makes directions of a series unit vectors.
         if (k > 0 && length(open_m.x, open_m.y) <= rounding_m) break;
         turn(links, matrix.solve(open_m));
     }
