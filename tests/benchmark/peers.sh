@@ -2,8 +2,9 @@
 # Compares Corda with other libraries: time against error on six problems, in one run on one core.
 # Usage: tests/benchmark/peers.sh [OUTPUT_FOLDER]
 # Installs the libraries, all packages of Debian 12 and 13, builds the programs of tests/benchmark/peers in build/peers,
-# runs them (10 minutes of CPU time) and writes the plots and tables of tests/benchmark/README.md and the rows of README.md. A library
-# that has no package is left out and named. OUTPUT_FOLDER (build/peers/runs by default) gets the truth and runs.csv, all runs.
+# runs them (10 minutes of CPU time) and writes the plots and tables of tests/benchmark/README.md and the rows of
+# README.md. A library that has no package is left out and named. OUTPUT_FOLDER (build/peers/runs by default) gets the
+# truth and runs.csv, all runs.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 cd "$root"

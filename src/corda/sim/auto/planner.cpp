@@ -56,9 +56,9 @@ struct Next {
     bool exceeds_budget = false;  ///< a trial would be worth its price, but not fit into the budget
 };
 
-/// The trial to run after one that failed: the cheapest that is worth its price and expected to hold; if none
-/// is expected to hold, the one that is worth its price and expected to reach farthest. If no trial is worth
-/// its price, the run of the failed one is drawn.
+/// Chooses the trial to run after one that failed: among trials worth their price, the cheapest that is
+/// expected to hold, or else the trial expected to reach farthest. If no trial is worth its price, the run of
+/// the failed trial is drawn.
 ///
 /// A price is the work of the run to the end and of the checks up to the time that is expected to be reached,
 /// less that of ending the run that failed. All are in parts of a whole run of the method that failed.

@@ -114,8 +114,8 @@ constexpr double kCheapEffort = 0.4;
 /// Steps of all particles in its run up to which it is not tried: some 10 ms.
 constexpr double kTooCheap = 6e5;
 /// Where strings come taut, errors of `exact` are of order 2 as well, and each kink costs several steps:
-/// cloths of 15 x 15 to 50 x 50 strings take 60 to 200 times as long at 1e-7 as by order 2 of `rattle`, which
-/// is therefore tried at this many steps, each a third of the last.
+/// cloths of 15 x 15 to 50 x 50 strings take 60 to 200 times as long at 1e-7 as by order 2 of `rattle`. So
+/// `rattle` is tried first, with this many step sizes, each a third of the last.
 constexpr int kTrialsWithKinks = 4;
 constexpr double kCheapEffortWithKinks = 0.01;
 

@@ -18,8 +18,8 @@ namespace corda::sim {
 namespace {
 
 /// Ratio of the error estimate of a run to its difference from a check. The error may exceed the difference
-/// by the check's own error, a sixth of it near rounding. Where strings come taut, `rattle` errs by chance
-/// less or more than its order says: by 2.7 differences at most in 200 cloths of strings.
+/// by the check's own error, a sixth of it near rounding. Where strings come taut, errors of `rattle` follow
+/// its order only on average: the largest of 200 cloths of strings was 2.7 differences.
 double estimate_per_difference(const System& system, const MethodDef& run) {
     constexpr double kUsual = 3.0;
     constexpr double kOfKinks = 6.0;

@@ -55,35 +55,32 @@ CORDA_INLINE double sum(const Four& of) {
     return (of[0] + of[1]) + (of[2] + of[3]);
 }
 
-/// Sum of a_i (c_i, s_i): where the chain ends.
-CORDA_AVX2_CLONES Vec2 end_m(const Links& links) {
+/// Sum of a_i (c_i, s_i), each times omega_i if `kTimesOmega`.
+template <bool kTimesOmega>
+CORDA_INLINE Vec2 sum_of_links(const Links& links) {
     Four x{};
     Four y{};
     std::size_t i = 0;
     for (; i + kFour <= links.count; i += kFour) {
-        const Four a = any_four(links.length_m + i).value;
-        x += a * any_four(links.c + i).value;
-        y += a * any_four(links.s + i).value;
+        Four weight = any_four(links.length_m + i).value;
+        if constexpr (kTimesOmega) weight *= any_four(links.omega_1_s + i).value;
+        x += weight * any_four(links.c + i).value;
+        y += weight * any_four(links.s + i).value;
     }
-    Vec2 end{sum(x), sum(y)};
-    for (; i < links.count; ++i) end = end + links.length_m[i] * Vec2{links.c[i], links.s[i]};
-    return end;
+    Vec2 all{sum(x), sum(y)};
+    for (; i < links.count; ++i) {
+        const double weight = links.length_m[i] * (kTimesOmega ? links.omega_1_s[i] : 1.0);
+        all = all + weight * Vec2{links.c[i], links.s[i]};
+    }
+    return all;
 }
 
-/// Sum of a_i omega_i (-s_i, c_i).
+/// Where the chain ends, seen from its start, and how fast the end moves.
+CORDA_AVX2_CLONES Vec2 end_m(const Links& links) {
+    return sum_of_links<false>(links);
+}
 CORDA_AVX2_CLONES Vec2 end_velocity_m_s(const Links& links) {
-    Four x{};
-    Four y{};
-    std::size_t i = 0;
-    for (; i + kFour <= links.count; i += kFour) {
-        const Four speed = any_four(links.length_m + i).value * any_four(links.omega_1_s + i).value;
-        x -= speed * any_four(links.s + i).value;
-        y += speed * any_four(links.c + i).value;
-    }
-    Vec2 end{sum(x), sum(y)};
-    for (; i < links.count; ++i)
-        end = end + (links.length_m[i] * links.omega_1_s[i]) * Vec2{-links.s[i], links.c[i]};
-    return end;
+    return left_of(sum_of_links<true>(links));
 }
 
 /// Turns each link by p_i . multiplier.

@@ -40,7 +40,7 @@ class Ode : NonCopyable {
     virtual void project(double* y) { static_cast<void>(y); }
 };
 
-/// From square roots, because std::pow is rounded differently by different C libraries.
+/// Takes three square roots, because std::pow is rounded differently by different C libraries.
 inline double eighth_root(double x) {
     return std::sqrt(std::sqrt(std::sqrt(x)));
 }
