@@ -1,11 +1,14 @@
 #include "corda/sim/forces/elastic_forces.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <variant>
 
+#include "corda/core/cpu.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/events.hpp"
 #include "corda/sim/forces/forces.hpp"
@@ -36,6 +39,65 @@ Along along(const double* x_m, const double* y_m, std::uint32_t from, std::uint3
     return {distance_m, inverse, dx * inverse, dy * inverse};
 }
 
+/// Springs whose forces are computed together.
+constexpr std::size_t kChunk = 64;
+/// The x and the y of each.
+struct Pairs {
+    std::array<double, kChunk> x;
+    std::array<double, kChunk> y;
+};
+
+/// Writes what the ends of the springs of strips are apart.
+CORDA_AVX2_CLONES void measure(std::span<const ElasticForces::Strip> strips, Components<const double> at_m,
+                               Pairs& apart_m) {
+    std::size_t first = 0;
+    for (const ElasticForces::Strip& strip : strips) {
+        const auto subtract = [&](const double* at, double* apart) {
+            CORDA_INDEPENDENT
+            for (std::size_t k = 0; k < strip.count; ++k) apart[k] = at[strip.b + k] - at[strip.a + k];
+        };
+        subtract(at_m.x, &apart_m.x[first]);
+        subtract(at_m.y, &apart_m.y[first]);
+        first += strip.count;
+    }
+}
+
+/// Turns what the ends of springs are apart into the forces on their first ends. True if one is shorter than
+/// about half of its rest length.
+CORDA_AVX2_CLONES bool pull(std::size_t count, const double* __restrict rest_m,
+                            const double* __restrict stiffness_n_m, const double* __restrict least_stretch_m,
+                            double* __restrict x, double* __restrict y) {
+    constexpr double kAboutHalf = -0.499;
+    int short_ones = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        const double distance_m = length(x[k], y[k]);
+        const double inverse_1_m = distance_m > 0.0 ? 1.0 / distance_m : 0.0;
+        const double stretch_m = std::max(distance_m - rest_m[k], least_stretch_m[k]);
+        const double tension_n = stiffness_n_m[k] * stretch_m;
+        short_ones += stretch_m < kAboutHalf * rest_m[k] ? 1 : 0;
+        x[k] = tension_n * (x[k] * inverse_1_m);
+        y[k] = tension_n * (y[k] * inverse_1_m);
+    }
+    return short_ones > 0;
+}
+
+/// Adds the forces of the springs of strips to their ends.
+CORDA_AVX2_CLONES void add(std::span<const ElasticForces::Strip> strips, const Pairs& pull_n,
+                           Components<double> force_n) {
+    std::size_t first = 0;
+    for (const ElasticForces::Strip& strip : strips) {
+        const auto add_to_ends = [&](const double* pull, double* force) {
+            CORDA_INDEPENDENT
+            for (std::size_t k = 0; k < strip.count; ++k) force[strip.b + k] -= pull[k];
+            CORDA_INDEPENDENT
+            for (std::size_t k = 0; k < strip.count; ++k) force[strip.a + k] += pull[k];
+        };
+        add_to_ends(&pull_n.x[first], force_n.x);
+        add_to_ends(&pull_n.y[first], force_n.y);
+        first += strip.count;
+    }
+}
+
 /// With what joins pins that will be let go.
 ElasticForces elastic_of_all_phases(const System& system) {
     if (system.release_s.empty()) return {system, 0, system.particle_count()};
@@ -45,6 +107,11 @@ ElasticForces elastic_of_all_phases(const System& system) {
 }
 
 }  // namespace
+
+double ElasticForces::Springs::stretch_m(std::size_t k, const double* x_m, const double* y_m) const {
+    const double distance_m = length(x_m[b[k]] - x_m[a[k]], y_m[b[k]] - y_m[a[k]]);
+    return std::max(distance_m - rest_m[k], least_stretch_m[k]);
+}
 
 ElasticForces::ElasticForces(const System& system, std::size_t first_particle, std::size_t particle_count)
     : first_particle_(first_particle) {
@@ -65,11 +132,28 @@ void ElasticForces::add_springs(const System& system, const Body& body) {
         if (system.is_pinned(bar.a) && system.is_pinned(bar.b)) continue;
         if (!system.has_bar_at(k, system.start_s)) continue;
         assert(bar.rest_m > 0.0);
-        springs_.push_back({k, static_cast<std::uint32_t>(bar.a - first_particle_),
-                            static_cast<std::uint32_t>(bar.b - first_particle_), bar.rest_m,
-                            1.0 / (body.material.compliance_1_n * bar.rest_m), least_m});
+        add_spring(k, static_cast<std::uint32_t>(bar.a - first_particle_),
+                   static_cast<std::uint32_t>(bar.b - first_particle_));
+        springs_.rest_m.push_back(bar.rest_m);
+        springs_.stiffness_n_m.push_back(1.0 / (body.material.compliance_1_n * bar.rest_m));
+        springs_.least_stretch_m.push_back(least_m);
         if (!system.cut_s.empty()) spring_cut_s_.push_back(system.cut_s[k]);
     }
+}
+
+void ElasticForces::add_spring(std::size_t bar, std::uint32_t a, std::uint32_t b) {
+    const bool begins_chunk = springs_.bar.size() % kChunk == 0;
+    // Later particles at b, so that each gets the force on a second end before that on a first one.
+    const bool continues =
+        !begins_chunk && !strips_.empty() && a < b && strips_.back().a < strips_.back().b &&
+        a == strips_.back().a + strips_.back().count && b == strips_.back().b + strips_.back().count;
+    if (continues)
+        ++strips_.back().count;
+    else
+        strips_.push_back({a, b, 1});
+    springs_.bar.push_back(bar);
+    springs_.a.push_back(a);
+    springs_.b.push_back(b);
 }
 
 void ElasticForces::add_joints(const System& system, std::size_t particle_count) {
@@ -101,9 +185,9 @@ void ElasticForces::bound_frequencies(const double* inverse_mass_1_kg, std::size
     };
     // Row i of the stiffness matrix: the entry of i itself, and those of the other free particles.
     std::vector<double> sum_n_m(particle_count, 0.0);
-    for (const Spring& spring : springs_) {
-        sum_n_m[spring.a] += spring.stiffness_n_m * (1.0 + moves(spring.b));
-        sum_n_m[spring.b] += spring.stiffness_n_m * (1.0 + moves(spring.a));
+    for (std::size_t k = 0; k < springs_.bar.size(); ++k) {
+        sum_n_m[springs_.a[k]] += springs_.stiffness_n_m[k] * (1.0 + moves(springs_.b[k]));
+        sum_n_m[springs_.b[k]] += springs_.stiffness_n_m[k] * (1.0 + moves(springs_.a[k]));
     }
     spring_square_frequency_ = largest(sum_n_m);
     std::fill(sum_n_m.begin(), sum_n_m.end(), 0.0);
@@ -124,18 +208,30 @@ void ElasticForces::bound_frequencies(const double* inverse_mass_1_kg, std::size
 double ElasticForces::add_forces(Components<const double> at_m, Components<double> force_n) const {
     // |T| / d over 1 / (C l) is |1 - l / d|: more than 1 only if d < l / 2.
     double shortest = 0.5;  // d / l
-    for (const Spring& spring : springs_) {
-        const Along bar = along(at_m.x, at_m.y, spring.a, spring.b);
-        const double stretch_m = std::max(bar.length_m - spring.rest_m, spring.least_stretch_m);
-        const double tension_n = spring.stiffness_n_m * stretch_m;
-        shortest = std::min(shortest, 1.0 + stretch_m / spring.rest_m);
-        force_n.x[spring.a] += tension_n * bar.x;
-        force_n.y[spring.a] += tension_n * bar.y;
-        force_n.x[spring.b] -= tension_n * bar.x;
-        force_n.y[spring.b] -= tension_n * bar.y;
+    Pairs pairs;
+    std::span<const Strip> strips = strips_;
+    for (std::size_t first = 0; first < springs_.bar.size(); first += kChunk) {
+        const std::size_t count = std::min(kChunk, springs_.bar.size() - first);
+        std::size_t used = 0;
+        for (std::size_t k = 0; k < count; ++used) k += strips[used].count;
+        measure(strips.first(used), at_m, pairs);
+        if (pull(count, &springs_.rest_m[first], &springs_.stiffness_n_m[first],
+                 &springs_.least_stretch_m[first], pairs.x.data(), pairs.y.data()))
+            shortest = std::min(shortest, shortest_share(at_m, first, count));
+        add(strips.first(used), pairs, force_n);
+        strips = strips.subspan(used);
     }
     const double push = 1.0 / std::max(shortest, kMinLengthShare) - 1.0;
     return push * spring_square_frequency_ + add_bend_forces(at_m, force_n);
+}
+
+double ElasticForces::shortest_share(Components<const double> at_m, std::size_t first,
+                                     std::size_t count) const {
+    double shortest = HUGE_VAL;
+    for (std::size_t k = first; k < first + count; ++k) {
+        shortest = std::min(shortest, 1.0 + springs_.stretch_m(k, at_m.x, at_m.y) / springs_.rest_m[k]);
+    }
+    return shortest;
 }
 
 double ElasticForces::add_bend_forces(Components<const double> at_m, Components<double> force_n) const {
@@ -168,12 +264,10 @@ double ElasticForces::common_square_frequency() const {
 
 double ElasticForces::energy_j(const double* x_m, const double* y_m, double time_s) const {
     double energy_j = 0.0;
-    for (std::size_t k = 0; k < springs_.size(); ++k) {
+    for (std::size_t k = 0; k < springs_.bar.size(); ++k) {
         if (!spring_cut_s_.empty() && spring_cut_s_[k] <= time_s) continue;
-        const Spring& spring = springs_[k];
-        const double stretch_m =
-            std::max(along(x_m, y_m, spring.a, spring.b).length_m - spring.rest_m, spring.least_stretch_m);
-        energy_j += 0.5 * spring.stiffness_n_m * (stretch_m * stretch_m);
+        const double stretch_m = springs_.stretch_m(k, x_m, y_m);
+        energy_j += 0.5 * springs_.stiffness_n_m[k] * (stretch_m * stretch_m);
     }
     for (std::size_t k = 0; k < joints_.size(); ++k) {
         if (!joint_cut_s_.empty() && joint_cut_s_[k] <= time_s) continue;
@@ -189,11 +283,8 @@ double ElasticForces::energy_j(const double* x_m, const double* y_m, double time
 }
 
 void ElasticForces::tensions(const double* x_m, const double* y_m, std::vector<double>& tension_n) const {
-    for (const Spring& spring : springs_) {
-        tension_n[spring.bar] =
-            spring.stiffness_n_m *
-            std::max(along(x_m, y_m, spring.a, spring.b).length_m - spring.rest_m, spring.least_stretch_m);
-    }
+    for (std::size_t k = 0; k < springs_.bar.size(); ++k)
+        tension_n[springs_.bar[k]] = springs_.stiffness_n_m[k] * springs_.stretch_m(k, x_m, y_m);
 }
 
 EnergyMeter::EnergyMeter(const System& system, const Forces& forces, std::span<const MethodDef> methods)

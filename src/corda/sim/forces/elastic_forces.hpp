@@ -25,12 +25,19 @@ struct Components {
 /// Positions and forces are arrays with one entry per particle, from the first one on.
 class ElasticForces {
   public:
+    /// Springs that join successive particles `a`, a + 1, .. to successive ones `b`, b + 1, ..
+    struct Strip {
+        std::uint32_t a = 0;
+        std::uint32_t b = 0;
+        std::uint32_t count = 0;
+    };
+
     /// Of the bars of stretching bodies and of all bends among the particles `first_particle` ..
     /// `first_particle + particle_count - 1` of the system, which are whole bodies. Bars and bends that join
     /// pinned particles alone never move and are left out, as are those that are gone at its start.
     ElasticForces(const System& system, std::size_t first_particle, std::size_t particle_count);
 
-    [[nodiscard]] bool empty() const { return springs_.empty() && joints_.empty(); }
+    [[nodiscard]] bool empty() const { return springs_.bar.empty() && joints_.empty(); }
 
     /// Adds the forces at these positions to `force_n`, those on pinned particles too. Returns a bound
     /// on the square of the largest angular frequency of small motions about the positions, 1 / s^2:
@@ -51,13 +58,17 @@ class ElasticForces {
     void tensions(const double* x_m, const double* y_m, std::vector<double>& tension_n) const;
 
   private:
-    struct Spring {
-        std::size_t bar = 0;  ///< of the system
-        std::uint32_t a = 0;
-        std::uint32_t b = 0;
-        double rest_m = 0.0;
-        double stiffness_n_m = 0.0;    ///< 1 / (C l)
-        double least_stretch_m = 0.0;  ///< lower bound on d - l: 0 for a string, otherwise none
+    /// One entry per spring.
+    struct Springs {
+        std::vector<std::size_t> bar;  ///< of the system
+        std::vector<std::uint32_t> a;
+        std::vector<std::uint32_t> b;
+        std::vector<double> rest_m;
+        std::vector<double> stiffness_n_m;    ///< 1 / (C l)
+        std::vector<double> least_stretch_m;  ///< lower bound on d - l: 0 for a string, otherwise none
+
+        /// d - l of a spring, or its lower bound.
+        [[nodiscard]] double stretch_m(std::size_t k, const double* x_m, const double* y_m) const;
     };
     struct Joint {
         std::uint32_t a = 0;
@@ -68,11 +79,16 @@ class ElasticForces {
         double after_m = 0.0;   ///< |bc| at the start
     };
     void add_springs(const System& system, const Body& body);
+    void add_spring(std::size_t bar, std::uint32_t a, std::uint32_t b);
+    /// The least length of springs in parts of their rest lengths.
+    [[nodiscard]] double shortest_share(Components<const double> at_m, std::size_t first,
+                                        std::size_t count) const;
     void add_joints(const System& system, std::size_t particle_count);
     void bound_frequencies(const double* inverse_mass_1_kg, std::size_t particle_count);
 
     std::size_t first_particle_ = 0;
-    std::vector<Spring> springs_;
+    Springs springs_;
+    std::vector<Strip> strips_;  ///< of springs_, in this order; none exceeds a chunk of add_forces()
     std::vector<Joint> joints_;
     std::vector<double> spring_cut_s_;  ///< when each is gone; empty if none ever is
     std::vector<double> joint_cut_s_;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "corda/core/cancel.hpp"
+#include "corda/core/cpu.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/rattle/chain_constraints.hpp"
 #include "corda/sim/rattle/graph_constraints.hpp"
@@ -67,7 +68,7 @@ std::vector<double> loads(const RigidBars& bars, const Motion& motion, Vec2 unif
     return load;
 }
 
-void kick(const RigidBars& bars, const Stage& stage, Motion& motion) {
+CORDA_AVX2_CLONES void kick(const RigidBars& bars, const Stage& stage, Motion& motion) {
     double* __restrict const vx = motion.vx_m_s.data();
     double* __restrict const vy = motion.vy_m_s.data();
     double* __restrict const lost_x = motion.vx_lost_m_s.data();
@@ -84,7 +85,7 @@ void kick(const RigidBars& bars, const Stage& stage, Motion& motion) {
     }
 }
 
-void drift(double span_s, Motion& motion) {
+CORDA_AVX2_CLONES void drift(double span_s, Motion& motion) {
     double* __restrict const x = motion.x_m.data();
     double* __restrict const y = motion.y_m.data();
     double* __restrict const lost_x = motion.x_lost_m.data();
