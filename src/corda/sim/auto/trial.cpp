@@ -88,26 +88,27 @@ class Comparison {
 };
 
 /// Chooses the times between frames at which a run is compared with its checks, by the steps of the run,
-/// which follow its motion. At first there are several in a step, whose error has its largest values within;
-/// they become rarer with their number, because the longer a motion is, the less it matters when it is looked
-/// at. They do not depend on other times that are recorded, so that a still or an exposure does not change a
-/// plan.
+/// which follow its motion. At first there are several in a step of `exact`, whose error has its largest
+/// values within, and one in a step of `rattle`, which is short; they become rarer with their number, because
+/// the longer a motion is, the less it matters when it is looked at. They do not depend on other times that
+/// are recorded, so that a still or an exposure does not change a plan.
 class Between {
   public:
     /// `first_s`: the first of them to try, > 0.
-    explicit Between(double first_s) : gap_s_(first_s) {}
+    Between(const MethodDef& run, double first_s)
+        : at_first_steps_(std::holds_alternative<RattleDef>(run) ? 1.0 : 0.125), gap_s_(first_s) {}
 
     /// Notes a comparison: its time, and the steps that the run had taken by then.
     void add(double time_s, std::uint64_t steps) {
         constexpr double kGolden = 0.6180339887498949;
-        constexpr double kAtFirst = 0.125;  // steps from one to the next
         constexpr double kUntilSparser = 128.0;
         constexpr double kCounted = 3.0;  // steps from which their length follows
         time_s_ = time_s;
         points_ += 1.0;
         turns_ += kGolden;
         turns_ -= std::floor(turns_);
-        const double every_s = kAtFirst * std::max(1.0, points_ / kUntilSparser) * (time_s - counted_s_);
+        const double every_s =
+            at_first_steps_ * std::max(1.0, points_ / kUntilSparser) * (time_s - counted_s_);
         const auto taken = static_cast<double>(steps - counted_);
         if (taken < kCounted) {
             gap_s_ = std::max(gap_s_, every_s / (taken + 1.0));
@@ -127,6 +128,7 @@ class Between {
     }
 
   private:
+    double at_first_steps_;  ///< from one to the next
     double gap_s_;
     double time_s_ = 0.0;     ///< of the last comparison
     double counted_s_ = 0.0;  ///< since when steps are counted
@@ -261,7 +263,7 @@ class CheckedRun : NonCopyable {
           checks_(system, forces_, trial.check, def.timeline.step_s(), check_count(system, trial.method)),
           comparison_(def.tolerance_m, estimate_per_difference(system, trial.method)),
           other_snaps_(system, forces_, def, trial),
-          between_(kFirstPoint * def.timeline.step_s()),
+          between_(trial.method, kFirstPoint * def.timeline.step_s()),
           point_(run_.state()) {}
 
     [[nodiscard]] double time_s() const { return run_.state().time_s; }
