@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "benchmark/study/reference/ropes.hpp"
 #include "corda/sim/defs.hpp"
+#include "support/nets.hpp"
 #include "support/random_ring.hpp"
 
 namespace corda::sim {
@@ -45,6 +48,44 @@ TEST(ElasticForces, AreTheSlopeOfTheirEnergy) {
                 EXPECT_NEAR(force_n[i], (before_j - after_j) / (2.0 * kMove), 1e-6) << seed << " " << i;
             }
         }
+    }
+}
+
+// Springs are computed in chunks, each of strips of successive particles, with the roundings of one after the
+// other.
+TEST(ElasticForces, AreThoseOfOneSpringAfterTheOther) {
+    for (const bool is_string : {false, true}) {
+        NetDef net = test::leaning_net(37, 11, 0.1, true);
+        std::swap(net.bars[100].a, net.bars[100].b);
+        net.material = {1e-3, is_string};
+        System system = build_system({}, {&net, 1});
+        const ElasticForces elastic(system, 0, system.particle_count());
+        for (std::size_t i = 0; i < system.particle_count(); ++i) {
+            system.x_m[i] += 0.03 * std::sin(1.7 * static_cast<double>(i));
+            system.y_m[i] += 0.03 * std::cos(2.9 * static_cast<double>(i));
+        }
+        std::vector<double> x_n(system.particle_count(), 0.0);
+        std::vector<double> y_n = x_n;
+        double shortest = 0.5;
+        for (const Bar& bar : system.bars) {
+            if (system.is_pinned(bar.a) && system.is_pinned(bar.b)) continue;
+            const double dx = system.x_m[bar.b] - system.x_m[bar.a];
+            const double dy = system.y_m[bar.b] - system.y_m[bar.a];
+            const double inverse = 1.0 / length(dx, dy);
+            const double longer_m = length(dx, dy) - bar.rest_m;
+            const double stretch_m = is_string ? std::max(longer_m, 0.0) : longer_m;
+            const double tension_n = 1.0 / (1e-3 * bar.rest_m) * stretch_m;
+            shortest = std::min(shortest, 1.0 + stretch_m / bar.rest_m);
+            x_n[bar.a] += tension_n * (dx * inverse);
+            y_n[bar.a] += tension_n * (dy * inverse);
+            x_n[bar.b] -= tension_n * (dx * inverse);
+            y_n[bar.b] -= tension_n * (dy * inverse);
+        }
+        const ElasticState forces = forces_of(elastic, system.x_m, system.y_m);
+        EXPECT_EQ(forces.x_n, x_n);
+        EXPECT_EQ(forces.y_n, y_n);
+        EXPECT_EQ(shortest < 0.5, !is_string);
+        EXPECT_EQ(forces.square_frequency, (1.0 / shortest - 1.0) * elastic.common_square_frequency());
     }
 }
 
