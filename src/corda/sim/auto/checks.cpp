@@ -108,7 +108,7 @@ class Checks::Check : NonCopyable {
   public:
     Check(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
           std::size_t number, const std::vector<double>& longer_m = {})
-        : cosine_sine_(kTurns.at(number % kMaxCount)), system_(system) {
+        : method_(method), cosine_sine_(kTurns.at(number % kMaxCount)), system_(system) {
         round_lengths(system_, number);
         const MaterialDef& material = system.bodies.front().material;
         const auto* exact = std::get_if<ExactDef>(&method);
@@ -138,6 +138,7 @@ class Checks::Check : NonCopyable {
         state_ = {0.0, system_.x_m, system_.y_m};
     }
 
+    [[nodiscard]] const MethodDef& method() const { return method_; }
     [[nodiscard]] double margin_m() const { return solver_->margin_m(); }
 
     /// kDiverged also if it has branched, or ended because it would take more work than this.
@@ -186,6 +187,7 @@ class Checks::Check : NonCopyable {
         return make_part(system_, forces, method, all);
     }
 
+    MethodDef method_;
     Vec2 cosine_sine_;  ///< of the angle by which it is turned
     System system_;
     std::unique_ptr<Solver> solver_;
@@ -194,14 +196,14 @@ class Checks::Check : NonCopyable {
     bool has_ended_ = false;
 };
 
-Checks::Checks(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
-               std::size_t count) {
-    for (std::size_t number = 0; number < count; ++number)
-        checks_.push_back(std::make_unique<Check>(system, forces, method, frame_interval_s, number));
+Checks::Checks(const System& system, const Forces& forces, const Trial& trial, double frame_interval_s) {
+    for (const MethodDef& method : checks_of(system, trial))
+        checks_.push_back(std::make_unique<Check>(system, forces, method, frame_interval_s, size()));
+    repeat_run_ = checks_.back()->method() == trial.method;
+    first_alike_ = repeat_run_ ? 1 : 0;
 }
 
-Checks::Checks(const System& string, const Forces& forces, const ExactDef& method, double longer_m)
-    : are_alike_(false) {
+Checks::Checks(const System& string, const Forces& forces, const ExactDef& method, double longer_m) {
     constexpr std::size_t kMaxBits = 3;
     std::vector<double> longer(string.bars.size());
     const auto bits = static_cast<std::size_t>(std::bit_width(longer.size() - 1));
@@ -210,6 +212,7 @@ Checks::Checks(const System& string, const Forces& forces, const ExactDef& metho
             longer[k] = ((k >> (number / 2)) + number) % 2 == 0 ? longer_m : -longer_m;
         checks_.push_back(std::make_unique<Check>(string, forces, method, 0.0, number, longer));
     }
+    first_alike_ = size();
 }
 
 Checks::~Checks() {
@@ -263,7 +266,8 @@ double Checks::difference_m(const State& state) const {
             const Vec2 at = checks_[a]->position_m(i);
             const Vec2 apart = at - Vec2{state.x_m[i], state.y_m[i]};
             distance_m2 = std::max(dot(apart, apart), distance_m2);
-            for (std::size_t b = 0; are_alike_ && b < a; ++b) {
+            if (repeat_run_ && a >= first_alike_) rounding_m2 = std::max(dot(apart, apart), rounding_m2);
+            for (std::size_t b = first_alike_; b < a; ++b) {
                 const Vec2 differ = at - checks_[b]->position_m(i);
                 rounding_m2 = std::max(dot(differ, differ), rounding_m2);
             }

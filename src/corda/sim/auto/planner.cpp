@@ -74,14 +74,13 @@ Next next_trial(const System& system, const std::vector<Candidate>& candidates, 
     constexpr double kSmallUpdates = 2e6;      // about 0.1 s: worth any gain
     constexpr double kLooseTolerance = 1e-6;   // a looser run drifts visibly
     const Candidate& failed = candidates[failure.number];
-    const double work_of_check = (failed.trial.updates / std::max(1.0, failure.run_updates) - 1.0) /
-                                 std::max(1.0, failed.trial.passes - 1.0);
-    const double dearer = work_of_check * failed.effort / failed.check_effort;  // checks than expected
+    // Checks than expected, if all have begun.
+    const double dearer = (failed.trial.updates / std::max(1.0, failure.run_updates) - 1.0) * failed.effort /
+                          failed.checks_effort * static_cast<double>(checks_of(system, failed.trial).size()) /
+                          std::max(1.0, failed.trial.passes - 1.0);
     const double whole_updates = failure.run_updates * end_s / failure.ran_s;
     const auto whole_price = [&](const Candidate& other) {
-        const auto checks = static_cast<double>(check_count(system, other.trial.method));
-        return (other.effort + checks * dearer * other.check_effort * expected_s(other) / end_s) /
-               failed.effort;
+        return (other.effort + dearer * other.checks_effort * expected_s(other) / end_s) / failed.effort;
     };
     const auto fits = [&](const Candidate& other) {
         return !(whole_price(other) * whole_updates > failure.left_updates);

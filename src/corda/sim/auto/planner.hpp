@@ -92,14 +92,15 @@ struct TrialKind {
 /// particles that are moved to either side, and shows how small movements grow.
 [[nodiscard]] bool may_buckle_unseen(const System& system, const MethodDef& method);
 
-/// Number of checks of a trial of a method.
-[[nodiscard]] std::size_t check_count(const System& system, const MethodDef& method);
+/// The methods of a trial's checks, the first of which is its `check`. A run whose error is not far above
+/// rounding has two more, which show what rounding makes of the motion. With fixed steps they repeat the run,
+/// whose other errors do not depend on the directions of coordinates.
+[[nodiscard]] std::vector<MethodDef> checks_of(const System& system, const Trial& trial);
 
 /// Runs the trial's method and its checks side by side, the checks in turned coordinates, so that their
-/// rounding differs from the start on, and returns the trial with how far they agree. A run whose error is
-/// not far above rounding has three checks, and what these differ by counts twice. `recording` is cleared and
-/// receives the run's states. Once the difference is too large for good, or the work too large, the checks
-/// end. Throws corda::Refusal.
+/// rounding differs from the start on, and returns the trial with how far they agree. What runs of the same
+/// method differ by counts twice. `recording` is cleared and receives the run's states. Once the difference
+/// is too large for good, or the work too large, the checks end. Throws corda::Refusal.
 [[nodiscard]] Trial run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind,
                               Trial trial, Recording& recording);
 
@@ -107,16 +108,15 @@ struct TrialKind {
 [[nodiscard]] std::optional<Refusal> refusal(const System& system, const WorldDef& world,
                                              const MethodDef& method, double frame_interval_s);
 
-/// The checks of a trial: tighter runs in turned coordinates, which round otherwise than the trial's run, and
-/// than one another, from the start on. Those of large systems advance in threads of their own; positions are
-/// the same either way.
+/// The checks of a trial: runs in turned coordinates, which round otherwise than the trial's run, and than
+/// one another, from the start on. Those of large systems advance in threads of their own; positions are the
+/// same either way.
 class Checks : NonCopyable {
   public:
     static constexpr std::size_t kMaxCount = 3;
 
-    /// `count` of them, 1 to kMaxCount.
-    Checks(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
-           std::size_t count);
+    /// Those of checks_of().
+    Checks(const System& system, const Forces& forces, const Trial& trial, double frame_interval_s);
     /// For a string of rigid links: runs in which links come taut `longer_m` later or earlier. Of any two of
     /// eight neighbours, each is the earlier one in some run.
     Checks(const System& string, const Forces& forces, const ExactDef& method, double longer_m);
@@ -136,9 +136,9 @@ class Checks : NonCopyable {
     /// Work of all up to the last finish().
     [[nodiscard]] double updates() const { return updates_; }
 
-    /// The largest distance of a particle from its positions in the checks plus, if there are several, twice
-    /// their own differences. These are rounding; a run that is no better could be near the checks by chance
-    /// and far from the truth. Infinite for a NaN.
+    /// The largest distance of a particle from its positions in the checks plus twice the differences of runs
+    /// of the same method. These are rounding; a run that is no better could be near the checks by chance and
+    /// far from the truth. Infinite for a NaN.
     [[nodiscard]] double difference_m(const State& state) const;
 
     /// For a string of rigid links, StringPart::margin_m() of the first check; otherwise infinite.
@@ -151,7 +151,8 @@ class Checks : NonCopyable {
     class Check;
 
     std::atomic<bool> is_abandoned_ = false;
-    bool are_alike_ = true;  ///< they differ by rounding alone
+    std::size_t first_alike_ = 0;  ///< of the checks that differ by rounding alone
+    bool repeat_run_ = false;      ///< these do so from the run, too
     bool have_ended_ = false;
     double time_s_ = 0.0;             ///< that they have reached, or are on their way to
     double most_updates_ = HUGE_VAL;  ///< of each until it is there

@@ -98,11 +98,14 @@ double stages_of(int order) {
     return static_cast<double>(composition(order).stages.size());
 }
 
-Candidate candidate(const MethodDef& method, const MethodDef& check, double effort, double check_effort,
-                    int digits) {
-    Candidate made{{}, effort, check_effort, digits};
+/// `check_effort`: of its check alone.
+Candidate candidate(const System& system, const MethodDef& method, const MethodDef& check, double effort,
+                    double check_effort, int digits) {
+    Candidate made{{}, effort, 0.0, digits};
     made.trial.method = method;
     made.trial.check = check;
+    for (const MethodDef& one : checks_of(system, made.trial))
+        made.checks_effort += one == check ? check_effort : effort;
     return made;
 }
 
@@ -120,19 +123,20 @@ constexpr int kTrialsWithKinks = 4;
 constexpr double kCheapEffortWithKinks = 0.01;
 
 /// Adds the trials that come before those of `exact`, with these digits and more.
-void add_cheap_trials(std::vector<Candidate>& trials, double step_s, bool kinks, double check_tolerance,
-                      int digits) {
+void add_cheap_trials(std::vector<Candidate>& trials, const System& system, double step_s,
+                      double check_tolerance, int digits) {
     const auto cheap = [](double s, double share) {
         return RattleDef{kCheapOrder, s, share * RattleDef{}.guard};
     };
-    if (!kinks) {
-        trials.push_back(candidate(cheap(step_s, 1.0), ExactDef{check_tolerance}, kCheapEffort, 1.0, digits));
+    if (!has_kinks(system)) {
+        trials.push_back(
+            candidate(system, cheap(step_s, 1.0), ExactDef{check_tolerance}, kCheapEffort, 1.0, digits));
         return;
     }
     double share = 1.0;
     for (int i = 0; i < kTrialsWithKinks; ++i, share *= kCheckStep) {
         const double effort = kCheapEffortWithKinks / share;
-        trials.push_back(candidate(cheap(share * step_s, share),
+        trials.push_back(candidate(system, cheap(share * step_s, share),
                                    cheap(kCheckStep * share * step_s, kCheckStep * share), effort,
                                    effort / kCheckStep, digits + i));
     }
@@ -176,7 +180,7 @@ std::vector<Candidate> exact_trials(const System& system, const WorldDef& world,
         const double steps_1_s =
             explicit_1_s > 0.0 ? implicit_steps_1_s(system, body, world, kTolerance[i]) : 0.0;
         if (!(steps_1_s < explicit_1_s)) break;
-        trials.push_back(candidate(ExactDef{kTolerance[i], true},
+        trials.push_back(candidate(system, ExactDef{kTolerance[i], true},
                                    ExactDef{kImplicitCheck * kTolerance[i], true}, steps_1_s,
                                    kStepsOfImplicitCheck * steps_1_s, static_cast<int>(i)));
         trials.back().most_steps_1_s = kMoreThanExplicit * explicit_1_s;
@@ -187,7 +191,7 @@ std::vector<Candidate> exact_trials(const System& system, const WorldDef& world,
             const auto cheap_digits = static_cast<int>(digits);
             // Stability limits the steps of both: `exact` costs no more at a tolerance that errs less.
             digits = std::min(digits + kNextDigits, tightest.run);
-            add_cheap_trials(trials, step_s, has_kinks(system), kTolerance[digits], cheap_digits);
+            add_cheap_trials(trials, system, step_s, kTolerance[digits], cheap_digits);
         }
     }
     const bool has_implicit = !trials.empty() && is_implicit(trials.front().trial.method);
@@ -197,7 +201,7 @@ std::vector<Candidate> exact_trials(const System& system, const WorldDef& world,
         const std::size_t check =
             std::min(digits + (is_rigid_net ? kNetCheckDigits : kCheckDigits), tightest.check);
         const double check_effort = eighth_root(kTolerance[digits] / kTolerance[check]) * effort;
-        trials.push_back(candidate(ExactDef{kTolerance[digits]}, ExactDef{kTolerance[check]}, effort,
+        trials.push_back(candidate(system, ExactDef{kTolerance[digits]}, ExactDef{kTolerance[check]}, effort,
                                    check_effort, static_cast<int>(digits)));
         if (digits == tightest.run) return trials;
     }
@@ -218,7 +222,7 @@ std::vector<Candidate> graph_trials(const System& system, const WorldDef& world,
         const double step_s = stable_s / static_cast<double>(1 << rung.halvings);
         const int check_order = std::min(rung.order + 2, RattleDef::kOrders.back());
         trials.push_back(
-            candidate(RattleDef{rung.order, step_s},
+            candidate(system, RattleDef{rung.order, step_s},
                       RattleDef{check_order, kCheckStep * step_s, kCheckStep * RattleDef{}.guard},
                       stages_of(rung.order) / step_s, stages_of(check_order) / (kCheckStep * step_s),
                       kDigits * static_cast<int>(trials.size())));

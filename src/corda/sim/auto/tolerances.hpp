@@ -13,8 +13,8 @@ namespace corda::sim {
 /// A trial that may be run.
 struct Candidate {
     Trial trial;
-    double effort;        ///< of a second of its run, in parts of that of other candidates
-    double check_effort;  ///< the same of a check
+    double effort;         ///< of a second of its run, in parts of that of other candidates
+    double checks_effort;  ///< the same of its checks
     int digits;  ///< powers of ten by which its errors are smaller than those of other candidates, roughly
     double most_steps_1_s = HUGE_VAL;  ///< after which it ends, besides short ones that a start may need
 };

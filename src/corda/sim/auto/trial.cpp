@@ -260,7 +260,7 @@ class CheckedRun : NonCopyable {
           passes_(passes),
           forces_(world),
           run_(system, world, trial.method, def.timeline.step_s()),
-          checks_(system, forces_, trial.check, def.timeline.step_s(), check_count(system, trial.method)),
+          checks_(system, forces_, trial, def.timeline.step_s()),
           comparison_(def.tolerance_m, estimate_per_difference(system, trial.method)),
           other_snaps_(system, forces_, def, trial),
           between_(trial.method, kFirstPoint * def.timeline.step_s()),
@@ -401,9 +401,12 @@ bool may_buckle_unseen(const System& system, const MethodDef& method) {
     return is_implicit(method) && body.material.compliance_1_n > 0.0 && pin_count(system, body) > 1;
 }
 
-std::size_t check_count(const System& system, const MethodDef& method) {
-    if (may_buckle_unseen(system, method)) return 2;
-    return is_far_from_rounding(system, method) ? 1 : Checks::kMaxCount;
+std::vector<MethodDef> checks_of(const System& system, const Trial& trial) {
+    if (may_buckle_unseen(system, trial.method)) return {trial.check, trial.check};
+    if (is_far_from_rounding(system, trial.method)) return {trial.check};
+    const bool has_fixed_steps = std::holds_alternative<RattleDef>(trial.method);
+    const MethodDef& others = has_fixed_steps ? trial.method : trial.check;
+    return {trial.check, others, others};
 }
 
 Trial run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial trial,

@@ -1,7 +1,9 @@
 #include "corda/sim/auto/planner.hpp"
 
+#include <algorithm>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -28,6 +30,13 @@ struct Outcome {
     std::size_t states = 0;
 };
 
+Trial trial_of(const MethodDef& method, const MethodDef& check) {
+    Trial trial;
+    trial.method = method;
+    trial.check = check;
+    return trial;
+}
+
 /// A trial of one second.
 Outcome outcome_of(const RopeDef& rope, const MethodDef& method, const MethodDef& check, double tolerance_m,
                    const TrialKind& kind = kind_of(false), const OnProgress& on_progress = {}) {
@@ -35,10 +44,8 @@ Outcome outcome_of(const RopeDef& rope, const MethodDef& method, const MethodDef
     const auto tolerance = [tolerance_m](const MotionBounds&) { return tolerance_m; };
     Recording recording(system.particle_count(), 61);
     Outcome outcome;
-    outcome.trial.method = method;
-    outcome.trial.check = check;
     outcome.trial = run_trial(system, WorldDef{}, {tolerance, Timeline(kTrialFrames, 60), on_progress, {}},
-                              kind, outcome.trial, recording);
+                              kind, trial_of(method, check), recording);
     outcome.states = recording.size();
     return outcome;
 }
@@ -213,6 +220,37 @@ TEST(RefusalOfAMethod, HasItsReason) {
     EXPECT_FALSE(refusal(system, WorldDef{}, RattleDef{}, 0.01).has_value());
 }
 
+TEST(Checks, RepeatARunOfFixedStepsThatIsNearRounding) {
+    const RopeDef rope = reference::straight_rope(5, 1.0, 60.0);
+    const System system = build_system({&rope, 1});
+    const auto of = [&](const MethodDef& method, const MethodDef& check) {
+        return checks_of(system, trial_of(method, check));
+    };
+    using Methods = std::vector<MethodDef>;
+    const ExactDef tight{1e-13};
+    EXPECT_EQ(of(ExactDef{1e-8}, tight), Methods{tight});
+    EXPECT_EQ(of(ExactDef{1e-9}, tight), (Methods{tight, tight, tight}));
+    const RattleDef check{6, 1e-4};
+    const RattleDef run{4, 3e-4};
+    EXPECT_EQ(of(RattleDef{2, 3e-4}, check), Methods{check});
+    EXPECT_EQ(of(run, check), (Methods{check, run, run}));
+
+    // What checks of one method differ by counts twice: rounding, here of much less than the error.
+    Checks checks(system, WorldDef{}, trial_of(run, check), 1.0 / 60.0);
+    Simulation alike(system, WorldDef{}, run);
+    ASSERT_EQ(alike.advance_to(0.3), Status::kOk);
+    checks.start(0.3);
+    ASSERT_EQ(checks.finish(), Status::kOk);
+    const double error_m = checks.difference_m(alike.state());
+    Simulation truth(system, WorldDef{}, tight);
+    ASSERT_EQ(truth.advance_to(0.3), Status::kOk);
+    double largest_m = 0.0;
+    for (std::size_t i = 0; i < system.particle_count(); ++i)
+        largest_m = std::max(largest_m, length(alike.state().x_m[i] - truth.state().x_m[i],
+                                               alike.state().y_m[i] - truth.state().y_m[i]));
+    EXPECT_NEAR(error_m, largest_m, 0.01 * largest_m);
+}
+
 /// Of a rope that swings, in one thread (5 links) and in several (120).
 class ChecksOfARope : public testing::TestWithParam<int> {
   protected:
@@ -221,8 +259,10 @@ class ChecksOfARope : public testing::TestWithParam<int> {
 };
 
 TEST_P(ChecksOfARope, AreNearALooserRun) {
-    Checks checks(system_, WorldDef{}, ExactDef{1e-12}, 1.0 / 60.0, 3);
-    Checks one(system_, WorldDef{}, ExactDef{1e-12}, 1.0 / 60.0, 1);
+    Checks checks(system_, WorldDef{}, trial_of(ExactDef{1e-9}, ExactDef{1e-12}), 1.0 / 60.0);
+    Checks one(system_, WorldDef{}, trial_of(ExactDef{1e-8}, ExactDef{1e-12}), 1.0 / 60.0);
+    ASSERT_EQ(checks.size(), 3U);
+    ASSERT_EQ(one.size(), 1U);
     Simulation run(system_, WorldDef{}, ExactDef{1e-8});
     for (const double time_s : {0.1, 0.2, 0.3}) {
         checks.start(time_s);
@@ -244,7 +284,7 @@ TEST_P(ChecksOfARope, CallGoesOnOnlyInTheCallersThread) {
         EXPECT_EQ(std::this_thread::get_id(), caller);
         return !std::exchange(is_asked, true);
     });
-    Checks checks(system_, WorldDef{}, ExactDef{1e-12}, 1.0 / 60.0, 3);
+    Checks checks(system_, WorldDef{}, trial_of(ExactDef{1e-9}, ExactDef{1e-12}), 1.0 / 60.0);
     is_asked = true;
     checks.start(30.0);  // a second of work or more
     try {
@@ -256,7 +296,7 @@ TEST_P(ChecksOfARope, CallGoesOnOnlyInTheCallersThread) {
 }
 
 TEST_P(ChecksOfARope, EndWithTheirOwner) {
-    Checks checks(system_, WorldDef{}, ExactDef{1e-12}, 1.0 / 60.0, 3);
+    Checks checks(system_, WorldDef{}, trial_of(ExactDef{1e-9}, ExactDef{1e-12}), 1.0 / 60.0);
     checks.start(1e6);
     EXPECT_EQ(checks.steps(), 0U);  // of the last finish(), whatever a thread has done since
 }
