@@ -120,7 +120,9 @@ Status OdePart::reach(double time_s, State& state) {
     dynamics_->set_time(time_s);
     dynamics_->project(output_.data());
     dynamics_->positions(output_.data(), state);
-    return Status::kOk;
+    // Steps end where tensions are known; the interpolation may ask for them between, where bars are in line.
+    const bool is_known = std::ranges::all_of(output_, [](double value) { return std::isfinite(value); });
+    return is_known ? Status::kOk : Status::kDiverged;
 }
 
 Exact::Exact(const System& system, const Forces& forces, const ExactDef& def, std::vector<double> output)
