@@ -218,7 +218,7 @@ TEST(AutoPlan, EndsWithinALimitOfWork) {
         std::int64_t last_frame;
         double steps;  ///< of the run that is drawn, at most
         int passes;
-        double updates;  ///< work of all trials; bounds are 1.5 times what was measured
+        double updates;  ///< work of all trials; the bounds are 1.5 times the measured work
     };
     std::vector<Row> rows;
     const auto add = [&rows](const char* name, const RopeDef& rope, std::int64_t last_frame, double steps,

@@ -5,7 +5,6 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <variant>
 
 #include "corda/core/cpu.hpp"
@@ -39,34 +38,25 @@ Along along(const double* x_m, const double* y_m, std::uint32_t from, std::uint3
     return {distance_m, inverse, dx * inverse, dy * inverse};
 }
 
-/// Springs whose forces are computed together.
-constexpr std::size_t kChunk = 64;
-/// The x and the y of each.
-struct Pairs {
-    std::array<double, kChunk> x;
-    std::array<double, kChunk> y;
-};
-
-/// Writes what the ends of the springs of strips are apart.
-CORDA_AVX2_CLONES void measure(std::span<const ElasticForces::Strip> strips, Components<const double> at_m,
-                               Pairs& apart_m) {
-    std::size_t first = 0;
-    for (const ElasticForces::Strip& strip : strips) {
-        const auto subtract = [&](const double* at, double* apart) {
-            CORDA_INDEPENDENT
-            for (std::size_t k = 0; k < strip.count; ++k) apart[k] = at[strip.b + k] - at[strip.a + k];
-        };
-        subtract(at_m.x, &apart_m.x[first]);
-        subtract(at_m.y, &apart_m.y[first]);
-        first += strip.count;
-    }
+/// Writes what the ends of the springs of a strip are apart along an axis.
+CORDA_INLINE void measure(const Strip& strip, const double* at_m, double* apart_m) {
+    CORDA_INDEPENDENT
+    for (std::size_t k = 0; k < strip.count; ++k) apart_m[k] = at_m[strip.b + k] - at_m[strip.a + k];
 }
 
-/// Turns what the ends of springs are apart into the forces on their first ends. True if one is shorter than
-/// about half of its rest length.
-CORDA_AVX2_CLONES bool pull(std::size_t count, const double* __restrict rest_m,
-                            const double* __restrict stiffness_n_m, const double* __restrict least_stretch_m,
-                            double* __restrict x, double* __restrict y) {
+/// Adds forces on the first ends of the springs of a strip to both ends along an axis.
+CORDA_INLINE void add(const Strip& strip, const double* pull_n, double* force_n) {
+    CORDA_INDEPENDENT
+    for (std::size_t k = 0; k < strip.count; ++k) force_n[strip.b + k] -= pull_n[k];
+    CORDA_INDEPENDENT
+    for (std::size_t k = 0; k < strip.count; ++k) force_n[strip.a + k] += pull_n[k];
+}
+
+/// Turns what the ends of some springs are apart into the forces on their first ends. Returns how many are
+/// shorter than about half of their rest lengths.
+CORDA_INLINE int pull(std::size_t count, const double* __restrict rest_m,
+                      const double* __restrict stiffness_n_m, const double* __restrict least_stretch_m,
+                      double* __restrict x, double* __restrict y) {
     constexpr double kAboutHalf = -0.499;
     int short_ones = 0;
     for (std::size_t k = 0; k < count; ++k) {
@@ -78,24 +68,31 @@ CORDA_AVX2_CLONES bool pull(std::size_t count, const double* __restrict rest_m,
         x[k] = tension_n * (x[k] * inverse_1_m);
         y[k] = tension_n * (y[k] * inverse_1_m);
     }
-    return short_ones > 0;
+    return short_ones;
 }
 
-/// Adds the forces of the springs of strips to their ends.
-CORDA_AVX2_CLONES void add(std::span<const ElasticForces::Strip> strips, const Pairs& pull_n,
-                           Components<double> force_n) {
-    std::size_t first = 0;
-    for (const ElasticForces::Strip& strip : strips) {
-        const auto add_to_ends = [&](const double* pull, double* force) {
-            CORDA_INDEPENDENT
-            for (std::size_t k = 0; k < strip.count; ++k) force[strip.b + k] -= pull[k];
-            CORDA_INDEPENDENT
-            for (std::size_t k = 0; k < strip.count; ++k) force[strip.a + k] += pull[k];
-        };
-        add_to_ends(&pull_n.x[first], force_n.x);
-        add_to_ends(&pull_n.y[first], force_n.y);
-        first += strip.count;
+/// Adds the forces of springs, and returns how many are shorter than about half of their rest lengths.
+CORDA_AVX2_CLONES int add_spring_forces(const Springs& springs, Components<const double> at_m,
+                                        Components<double> force_n) {
+    std::array<double, Springs::kChunk> x;
+    std::array<double, Springs::kChunk> y;
+    int short_ones = 0;
+    const Strip* strip = springs.strips.data();
+    for (std::size_t first = 0; first < springs.bar.size(); first += Springs::kChunk) {
+        const std::size_t count = std::min(Springs::kChunk, springs.bar.size() - first);
+        const Strip* next = strip;
+        for (std::size_t k = 0; k < count; k += next->count, ++next) {
+            measure(*next, at_m.x, &x[k]);
+            measure(*next, at_m.y, &y[k]);
+        }
+        short_ones += pull(count, &springs.rest_m[first], &springs.stiffness_n_m[first],
+                           &springs.least_stretch_m[first], x.data(), y.data());
+        for (std::size_t k = 0; k < count; k += strip->count, ++strip) {
+            add(*strip, &x[k], force_n.x);
+            add(*strip, &y[k], force_n.y);
+        }
     }
+    return short_ones;
 }
 
 /// With what joins pins that will be let go.
@@ -108,9 +105,24 @@ ElasticForces elastic_of_all_phases(const System& system) {
 
 }  // namespace
 
-double ElasticForces::Springs::stretch_m(std::size_t k, const double* x_m, const double* y_m) const {
+double Springs::stretch_m(std::size_t k, const double* x_m, const double* y_m) const {
     const double distance_m = length(x_m[b[k]] - x_m[a[k]], y_m[b[k]] - y_m[a[k]]);
     return std::max(distance_m - rest_m[k], least_stretch_m[k]);
+}
+
+void Springs::join(std::size_t of_bar, std::uint32_t from, std::uint32_t to) {
+    // With a before b, a particle gets its force as a second end before that as a first one, as it does
+    // spring by spring.
+    const bool continues = bar.size() % kChunk != 0 && from < to && strips.back().a < strips.back().b &&
+                           from == strips.back().a + strips.back().count &&
+                           to == strips.back().b + strips.back().count;
+    if (continues)
+        ++strips.back().count;
+    else
+        strips.push_back({from, to, 1});
+    bar.push_back(of_bar);
+    a.push_back(from);
+    b.push_back(to);
 }
 
 ElasticForces::ElasticForces(const System& system, std::size_t first_particle, std::size_t particle_count)
@@ -132,28 +144,13 @@ void ElasticForces::add_springs(const System& system, const Body& body) {
         if (system.is_pinned(bar.a) && system.is_pinned(bar.b)) continue;
         if (!system.has_bar_at(k, system.start_s)) continue;
         assert(bar.rest_m > 0.0);
-        add_spring(k, static_cast<std::uint32_t>(bar.a - first_particle_),
-                   static_cast<std::uint32_t>(bar.b - first_particle_));
+        springs_.join(k, static_cast<std::uint32_t>(bar.a - first_particle_),
+                      static_cast<std::uint32_t>(bar.b - first_particle_));
         springs_.rest_m.push_back(bar.rest_m);
         springs_.stiffness_n_m.push_back(1.0 / (body.material.compliance_1_n * bar.rest_m));
         springs_.least_stretch_m.push_back(least_m);
         if (!system.cut_s.empty()) spring_cut_s_.push_back(system.cut_s[k]);
     }
-}
-
-void ElasticForces::add_spring(std::size_t bar, std::uint32_t a, std::uint32_t b) {
-    const bool begins_chunk = springs_.bar.size() % kChunk == 0;
-    // Later particles at b, so that each gets the force on a second end before that on a first one.
-    const bool continues =
-        !begins_chunk && !strips_.empty() && a < b && strips_.back().a < strips_.back().b &&
-        a == strips_.back().a + strips_.back().count && b == strips_.back().b + strips_.back().count;
-    if (continues)
-        ++strips_.back().count;
-    else
-        strips_.push_back({a, b, 1});
-    springs_.bar.push_back(bar);
-    springs_.a.push_back(a);
-    springs_.b.push_back(b);
 }
 
 void ElasticForces::add_joints(const System& system, std::size_t particle_count) {
@@ -208,30 +205,12 @@ void ElasticForces::bound_frequencies(const double* inverse_mass_1_kg, std::size
 double ElasticForces::add_forces(Components<const double> at_m, Components<double> force_n) const {
     // |T| / d over 1 / (C l) is |1 - l / d|: more than 1 only if d < l / 2.
     double shortest = 0.5;  // d / l
-    Pairs pairs;
-    std::span<const Strip> strips = strips_;
-    for (std::size_t first = 0; first < springs_.bar.size(); first += kChunk) {
-        const std::size_t count = std::min(kChunk, springs_.bar.size() - first);
-        std::size_t used = 0;
-        for (std::size_t k = 0; k < count; ++used) k += strips[used].count;
-        measure(strips.first(used), at_m, pairs);
-        if (pull(count, &springs_.rest_m[first], &springs_.stiffness_n_m[first],
-                 &springs_.least_stretch_m[first], pairs.x.data(), pairs.y.data()))
-            shortest = std::min(shortest, shortest_share(at_m, first, count));
-        add(strips.first(used), pairs, force_n);
-        strips = strips.subspan(used);
+    if (add_spring_forces(springs_, at_m, force_n) > 0) {
+        for (std::size_t k = 0; k < springs_.bar.size(); ++k)
+            shortest = std::min(shortest, 1.0 + springs_.stretch_m(k, at_m.x, at_m.y) / springs_.rest_m[k]);
     }
     const double push = 1.0 / std::max(shortest, kMinLengthShare) - 1.0;
     return push * spring_square_frequency_ + add_bend_forces(at_m, force_n);
-}
-
-double ElasticForces::shortest_share(Components<const double> at_m, std::size_t first,
-                                     std::size_t count) const {
-    double shortest = HUGE_VAL;
-    for (std::size_t k = first; k < first + count; ++k) {
-        shortest = std::min(shortest, 1.0 + springs_.stretch_m(k, at_m.x, at_m.y) / springs_.rest_m[k]);
-    }
-    return shortest;
 }
 
 double ElasticForces::add_bend_forces(Components<const double> at_m, Components<double> force_n) const {

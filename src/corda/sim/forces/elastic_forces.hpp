@@ -18,6 +18,32 @@ struct Components {
     Number* y;
 };
 
+/// Springs that join successive particles `a`, a + 1, .. to successive ones `b`, b + 1, ..
+struct Strip {
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;
+    std::uint32_t count = 0;
+};
+
+/// Bars that stretch, one entry each. `a` and `b` are their ends.
+struct Springs {
+    /// Number of springs whose forces are computed together.
+    static constexpr std::size_t kChunk = 64;
+
+    std::vector<std::size_t> bar;  ///< of the system
+    std::vector<std::uint32_t> a;
+    std::vector<std::uint32_t> b;
+    std::vector<double> rest_m;
+    std::vector<double> stiffness_n_m;    ///< 1 / (C l)
+    std::vector<double> least_stretch_m;  ///< lower bound on d - l: 0 for a string, otherwise none
+    std::vector<Strip> strips;            ///< of all, in their order; none is in two chunks
+
+    /// Adds the ends of a spring.
+    void join(std::size_t of_bar, std::uint32_t from, std::uint32_t to);
+    /// d - l of a spring, or its lower bound.
+    [[nodiscard]] double stretch_m(std::size_t k, const double* x_m, const double* y_m) const;
+};
+
 /// The conservative forces of bars that stretch and of ropes that resist bending, in Cartesian coordinates
 /// (section 3.2 of src/corda/sim/README.md). A bar of length 0 has no direction: it exerts no force, and no
 /// bend acts at its ends.
@@ -25,13 +51,6 @@ struct Components {
 /// Positions and forces are arrays with one entry per particle, from the first one on.
 class ElasticForces {
   public:
-    /// Springs that join successive particles `a`, a + 1, .. to successive ones `b`, b + 1, ..
-    struct Strip {
-        std::uint32_t a = 0;
-        std::uint32_t b = 0;
-        std::uint32_t count = 0;
-    };
-
     /// Of the bars of stretching bodies and of all bends among the particles `first_particle` ..
     /// `first_particle + particle_count - 1` of the system, which are whole bodies. Bars and bends that join
     /// pinned particles alone never move and are left out, as are those that are gone at its start.
@@ -58,18 +77,6 @@ class ElasticForces {
     void tensions(const double* x_m, const double* y_m, std::vector<double>& tension_n) const;
 
   private:
-    /// One entry per spring.
-    struct Springs {
-        std::vector<std::size_t> bar;  ///< of the system
-        std::vector<std::uint32_t> a;
-        std::vector<std::uint32_t> b;
-        std::vector<double> rest_m;
-        std::vector<double> stiffness_n_m;    ///< 1 / (C l)
-        std::vector<double> least_stretch_m;  ///< lower bound on d - l: 0 for a string, otherwise none
-
-        /// d - l of a spring, or its lower bound.
-        [[nodiscard]] double stretch_m(std::size_t k, const double* x_m, const double* y_m) const;
-    };
     struct Joint {
         std::uint32_t a = 0;
         std::uint32_t b = 0;
@@ -79,16 +86,11 @@ class ElasticForces {
         double after_m = 0.0;   ///< |bc| at the start
     };
     void add_springs(const System& system, const Body& body);
-    void add_spring(std::size_t bar, std::uint32_t a, std::uint32_t b);
-    /// The least length of springs in parts of their rest lengths.
-    [[nodiscard]] double shortest_share(Components<const double> at_m, std::size_t first,
-                                        std::size_t count) const;
     void add_joints(const System& system, std::size_t particle_count);
     void bound_frequencies(const double* inverse_mass_1_kg, std::size_t particle_count);
 
     std::size_t first_particle_ = 0;
     Springs springs_;
-    std::vector<Strip> strips_;  ///< of springs_, in this order; none exceeds a chunk of add_forces()
     std::vector<Joint> joints_;
     std::vector<double> spring_cut_s_;  ///< when each is gone; empty if none ever is
     std::vector<double> joint_cut_s_;
