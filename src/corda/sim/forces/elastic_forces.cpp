@@ -5,6 +5,8 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 #include <variant>
 
 #include "corda/core/cpu.hpp"
@@ -139,7 +141,14 @@ ElasticForces::ElasticForces(const System& system, std::size_t first_particle, s
 
 void ElasticForces::add_springs(const System& system, const Body& body) {
     const double least_m = body.material.is_string ? 0.0 : -std::numeric_limits<double>::infinity();
-    for (std::size_t k = body.first_bar; k < body.first_bar + body.bar_count; ++k) {
+    std::vector<std::size_t> order(body.bar_count);
+    std::iota(order.begin(), order.end(), body.first_bar);
+    // Those of the rows of a grid, then those of its columns: long strips.
+    std::ranges::stable_sort(order, {}, [&](std::size_t k) {
+        const Bar& bar = system.bars[k];
+        return std::pair(std::max(bar.a, bar.b) - std::min(bar.a, bar.b), bar.a);
+    });
+    for (const std::size_t k : order) {
         const Bar& bar = system.bars[k];
         if (system.is_pinned(bar.a) && system.is_pinned(bar.b)) continue;
         if (!system.has_bar_at(k, system.start_s)) continue;

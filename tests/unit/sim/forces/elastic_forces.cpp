@@ -52,7 +52,7 @@ TEST(ElasticForces, AreTheSlopeOfTheirEnergy) {
 }
 
 // Springs are computed in chunks, each of strips of successive particles, with the roundings of one after the
-// other.
+// other in the order of the distances between the numbers of their ends.
 TEST(ElasticForces, AreThoseOfOneSpringAfterTheOther) {
     for (const bool is_string : {false, true}) {
         NetDef net = test::leaning_net(37, 11, 0.1, true);
@@ -67,6 +67,9 @@ TEST(ElasticForces, AreThoseOfOneSpringAfterTheOther) {
         std::vector<double> x_n(system.particle_count(), 0.0);
         std::vector<double> y_n = x_n;
         double shortest = 0.5;
+        std::ranges::stable_sort(system.bars, {}, [](const Bar& bar) {
+            return std::pair(std::max(bar.a, bar.b) - std::min(bar.a, bar.b), bar.a);
+        });
         for (const Bar& bar : system.bars) {
             if (system.is_pinned(bar.a) && system.is_pinned(bar.b)) continue;
             const double dx = system.x_m[bar.b] - system.x_m[bar.a];
