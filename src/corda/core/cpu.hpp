@@ -15,9 +15,9 @@
 #define CORDA_AVX2
 #endif
 #if defined(__x86_64__) && !defined(CORDA_NO_CLONES)
-/// Compiles a function twice, for every x86-64 CPU and for AVX2, and chooses when the program starts. The
-/// function must not throw: GCC leaves its calls out of their callers' exception tables, and an exception
-/// that passes such a caller ends the program.
+/// Compiles a function twice, for every x86-64 CPU and for AVX2, and chooses when the program starts. Clang
+/// takes no such function that is declared before it is defined. The function must not throw: GCC leaves its
+/// calls out of their callers' exception tables, and an exception that passes such a caller ends the program.
 #define CORDA_AVX2_CLONES [[gnu::target_clones("avx2", "default")]]
 #else
 #define CORDA_AVX2_CLONES

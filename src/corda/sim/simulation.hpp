@@ -168,12 +168,12 @@ class GivenMotion {
     std::string hash_;
 };
 
-/// One trial of a method: its run compared with tighter runs.
+/// One trial of a method: its run compared with checks.
 struct Trial {
     MethodDef method;
-    MethodDef check;  ///< method of the tighter runs
+    MethodDef check;  ///< method of the first check, a tighter run
     std::uint64_t steps = 0;
-    std::uint64_t check_steps = 0;      ///< of one tighter run
+    std::uint64_t check_steps = 0;      ///< of the first check
     double updates = 0.0;               ///< work of all runs up to their comparison, in updates of a particle
     double largest_difference_m = 0.0;  ///< up to `reached_s`
     double error_estimate_m = 0.0;      ///< up to `reached_s`

@@ -74,7 +74,7 @@ Next next_trial(const System& system, const std::vector<Candidate>& candidates, 
     constexpr double kSmallUpdates = 2e6;      // about 0.1 s: worth any gain
     constexpr double kLooseTolerance = 1e-6;   // a looser run drifts visibly
     const Candidate& failed = candidates[failure.number];
-    // Checks than expected, if all have begun.
+    // How many times as dear as expected checks are. Runs of other outcomes of snaps count as checks.
     const double dearer = (failed.trial.updates / std::max(1.0, failure.run_updates) - 1.0) * failed.effort /
                           failed.checks_effort * static_cast<double>(checks_of(system, failed.trial).size()) /
                           std::max(1.0, failed.trial.passes - 1.0);

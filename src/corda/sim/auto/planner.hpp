@@ -92,9 +92,10 @@ struct TrialKind {
 /// particles that are moved to either side, and shows how small movements grow.
 [[nodiscard]] bool may_buckle_unseen(const System& system, const MethodDef& method);
 
-/// The methods of a trial's checks, the first of which is its `check`. A run whose error is not far above
-/// rounding has two more, which show what rounding makes of the motion. With fixed steps they repeat the run,
-/// whose other errors do not depend on the directions of coordinates.
+/// The methods of a trial's checks, the first of which is its `check`, and the second, too, if
+/// may_buckle_unseen(). A run whose error is not far above rounding has two more, which show what rounding
+/// makes of the motion. Of a run of fixed steps they are repetitions, because its other errors hardly depend
+/// on the directions of coordinates.
 [[nodiscard]] std::vector<MethodDef> checks_of(const System& system, const Trial& trial);
 
 /// Runs the trial's method and its checks side by side, the checks in turned coordinates, so that their
@@ -126,7 +127,7 @@ class Checks : NonCopyable {
     [[nodiscard]] std::size_t size() const { return checks_.size(); }
 
     /// Begins to advance all to a time, in threads if that is worth it; the caller may advance the run
-    /// meanwhile. They end if all of them would take more work than this in updates of a particle.
+    /// meanwhile. They end if one would take more than an equal share of this work in updates of a particle.
     void start(double time_s, double most_updates = HUGE_VAL);
     /// Waits until they are there. kDiverged also if one has branched or ended. Throws what
     /// Solver::advance_to throws.

@@ -40,7 +40,7 @@ Along along(const double* x_m, const double* y_m, std::uint32_t from, std::uint3
     return {distance_m, inverse, dx * inverse, dy * inverse};
 }
 
-/// Writes what the ends of the springs of a strip are apart along an axis.
+/// Writes how far apart the ends of the springs of a strip are along an axis.
 CORDA_INLINE void measure(const Strip& strip, const double* at_m, double* apart_m) {
     CORDA_INDEPENDENT
     for (std::size_t k = 0; k < strip.count; ++k) apart_m[k] = at_m[strip.b + k] - at_m[strip.a + k];
@@ -54,12 +54,12 @@ CORDA_INLINE void add(const Strip& strip, const double* pull_n, double* force_n)
     for (std::size_t k = 0; k < strip.count; ++k) force_n[strip.a + k] += pull_n[k];
 }
 
-/// Turns what the ends of some springs are apart into the forces on their first ends. Returns how many are
-/// shorter than about half of their rest lengths.
+/// Turns the distances between the ends of some springs, along both axes, into the forces on their first
+/// ends. Returns how many are shorter than about half of their rest lengths.
 CORDA_INLINE int pull(std::size_t count, const double* __restrict rest_m,
                       const double* __restrict stiffness_n_m, const double* __restrict least_stretch_m,
                       double* __restrict x, double* __restrict y) {
-    constexpr double kAboutHalf = -0.499;
+    constexpr double kAboutHalf = -0.499;  // -0.5 and more than rounding
     int short_ones = 0;
     for (std::size_t k = 0; k < count; ++k) {
         const double distance_m = length(x[k], y[k]);
@@ -112,19 +112,19 @@ double Springs::stretch_m(std::size_t k, const double* x_m, const double* y_m) c
     return std::max(distance_m - rest_m[k], least_stretch_m[k]);
 }
 
-void Springs::join(std::size_t of_bar, std::uint32_t from, std::uint32_t to) {
-    // With a before b, a particle gets its force as a second end before that as a first one, as it does
-    // spring by spring.
-    const bool continues = bar.size() % kChunk != 0 && from < to && strips.back().a < strips.back().b &&
-                           from == strips.back().a + strips.back().count &&
-                           to == strips.back().b + strips.back().count;
+void Springs::add(const Spring& spring) {
+    const bool continues = bar.size() % kChunk != 0 && spring.a == strips.back().a + strips.back().count &&
+                           spring.b == strips.back().b + strips.back().count;
     if (continues)
         ++strips.back().count;
     else
-        strips.push_back({from, to, 1});
-    bar.push_back(of_bar);
-    a.push_back(from);
-    b.push_back(to);
+        strips.push_back({spring.a, spring.b, 1});
+    bar.push_back(spring.bar);
+    a.push_back(spring.a);
+    b.push_back(spring.b);
+    rest_m.push_back(spring.rest_m);
+    stiffness_n_m.push_back(spring.stiffness_n_m);
+    least_stretch_m.push_back(spring.least_stretch_m);
 }
 
 ElasticForces::ElasticForces(const System& system, std::size_t first_particle, std::size_t particle_count)
@@ -141,23 +141,23 @@ ElasticForces::ElasticForces(const System& system, std::size_t first_particle, s
 
 void ElasticForces::add_springs(const System& system, const Body& body) {
     const double least_m = body.material.is_string ? 0.0 : -std::numeric_limits<double>::infinity();
+    const auto ends = [&](std::size_t k) { return std::minmax(system.bars[k].a, system.bars[k].b); };
     std::vector<std::size_t> order(body.bar_count);
     std::iota(order.begin(), order.end(), body.first_bar);
-    // Those of the rows of a grid, then those of its columns: long strips.
+    // The rows of a grid come first, then its columns: strips are long.
     std::ranges::stable_sort(order, {}, [&](std::size_t k) {
-        const Bar& bar = system.bars[k];
-        return std::pair(std::max(bar.a, bar.b) - std::min(bar.a, bar.b), bar.a);
+        const auto [a, b] = ends(k);
+        return std::pair(b - a, a);
     });
     for (const std::size_t k : order) {
         const Bar& bar = system.bars[k];
         if (system.is_pinned(bar.a) && system.is_pinned(bar.b)) continue;
         if (!system.has_bar_at(k, system.start_s)) continue;
         assert(bar.rest_m > 0.0);
-        springs_.join(k, static_cast<std::uint32_t>(bar.a - first_particle_),
-                      static_cast<std::uint32_t>(bar.b - first_particle_));
-        springs_.rest_m.push_back(bar.rest_m);
-        springs_.stiffness_n_m.push_back(1.0 / (body.material.compliance_1_n * bar.rest_m));
-        springs_.least_stretch_m.push_back(least_m);
+        const auto [a, b] = ends(k);
+        springs_.add({k, static_cast<std::uint32_t>(a - first_particle_),
+                      static_cast<std::uint32_t>(b - first_particle_), bar.rest_m,
+                      1.0 / (body.material.compliance_1_n * bar.rest_m), least_m});
         if (!system.cut_s.empty()) spring_cut_s_.push_back(system.cut_s[k]);
     }
 }

@@ -18,6 +18,16 @@ struct Components {
     Number* y;
 };
 
+/// A bar that stretches.
+struct Spring {
+    std::size_t bar = 0;  ///< of the system
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;  ///< > a
+    double rest_m = 0.0;
+    double stiffness_n_m = 0.0;    ///< 1 / (C l)
+    double least_stretch_m = 0.0;  ///< lower bound on d - l: 0 for a string, otherwise none
+};
+
 /// Springs that join successive particles `a`, a + 1, .. to successive ones `b`, b + 1, ..
 struct Strip {
     std::uint32_t a = 0;
@@ -25,21 +35,20 @@ struct Strip {
     std::uint32_t count = 0;
 };
 
-/// Bars that stretch, one entry each. `a` and `b` are their ends.
+/// The members of many springs, in an array each.
 struct Springs {
     /// Number of springs whose forces are computed together.
     static constexpr std::size_t kChunk = 64;
 
-    std::vector<std::size_t> bar;  ///< of the system
+    std::vector<std::size_t> bar;
     std::vector<std::uint32_t> a;
     std::vector<std::uint32_t> b;
     std::vector<double> rest_m;
-    std::vector<double> stiffness_n_m;    ///< 1 / (C l)
-    std::vector<double> least_stretch_m;  ///< lower bound on d - l: 0 for a string, otherwise none
-    std::vector<Strip> strips;            ///< of all, in their order; none is in two chunks
+    std::vector<double> stiffness_n_m;
+    std::vector<double> least_stretch_m;
+    std::vector<Strip> strips;  ///< of all, in their order; none is in two chunks
 
-    /// Adds the ends of a spring.
-    void join(std::size_t of_bar, std::uint32_t from, std::uint32_t to);
+    void add(const Spring& spring);
     /// d - l of a spring, or its lower bound.
     [[nodiscard]] double stretch_m(std::size_t k, const double* x_m, const double* y_m) const;
 };

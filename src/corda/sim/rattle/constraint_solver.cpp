@@ -68,7 +68,9 @@ std::vector<double> loads(const RigidBars& bars, const Motion& motion, Vec2 unif
     return load;
 }
 
-CORDA_AVX2_CLONES void kick(const RigidBars& bars, const Stage& stage, Motion& motion) {
+namespace {
+
+CORDA_AVX2_CLONES void kick_all(const RigidBars& bars, const Stage& stage, Motion& motion) {
     double* __restrict const vx = motion.vx_m_s.data();
     double* __restrict const vy = motion.vy_m_s.data();
     double* __restrict const lost_x = motion.vx_lost_m_s.data();
@@ -85,7 +87,7 @@ CORDA_AVX2_CLONES void kick(const RigidBars& bars, const Stage& stage, Motion& m
     }
 }
 
-CORDA_AVX2_CLONES void drift(double span_s, Motion& motion) {
+CORDA_AVX2_CLONES void drift_all(double span_s, Motion& motion) {
     double* __restrict const x = motion.x_m.data();
     double* __restrict const y = motion.y_m.data();
     double* __restrict const lost_x = motion.x_lost_m.data();
@@ -98,6 +100,16 @@ CORDA_AVX2_CLONES void drift(double span_s, Motion& motion) {
         add_unrounded(x[i], lost_x[i], span_s * vx[i] + span_s * lost_vx[i]);
         add_unrounded(y[i], lost_y[i], span_s * vy[i] + span_s * lost_vy[i]);
     }
+}
+
+}  // namespace
+
+void kick(const RigidBars& bars, const Stage& stage, Motion& motion) {
+    kick_all(bars, stage, motion);
+}
+
+void drift(double span_s, Motion& motion) {
+    drift_all(span_s, motion);
 }
 
 std::unique_ptr<ConstraintSolver> make_constraint_solver(const System& system) {

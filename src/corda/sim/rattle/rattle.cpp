@@ -242,17 +242,20 @@ void guess(RattleModel& model, std::size_t stage, double kick_s, int known, cons
 
 /// Applies the decay and the push of a stage together with the elastic forces; returns what is left of it.
 CORDA_AVX2_CLONES Stage push(const RattleModel& model, double kick_s, const Stage& stage, Motion& motion) {
-    const double* __restrict const inverse_mass = model.constraints->bars().inverse_mass_1_kg.data();
+    const double* const inverse_mass = model.constraints->bars().inverse_mass_1_kg.data();
+    const double* const force_x = model.force_x_n.data();
+    const double* const force_y = model.force_y_n.data();
+    double* const vx = motion.vx_m_s.data();
+    double* const vy = motion.vy_m_s.data();
+    double* const lost_x = motion.vx_lost_m_s.data();
+    double* const lost_y = motion.vy_lost_m_s.data();
     const double slowdown = stage.decay - 1.0;
-    const auto push = [&](double push_m_s, const double* __restrict force_n, double* __restrict v,
-                          double* __restrict lost) {
-        for (std::size_t i = 0; i < motion.x_m.size(); ++i) {
-            const double weighted_s = kick_s * inverse_mass[i];
-            add_unrounded(v[i], lost[i], slowdown * v[i] + push_m_s + weighted_s * force_n[i]);
-        }
-    };
-    push(stage.push_m_s.x, model.force_x_n.data(), motion.vx_m_s.data(), motion.vx_lost_m_s.data());
-    push(stage.push_m_s.y, model.force_y_n.data(), motion.vy_m_s.data(), motion.vy_lost_m_s.data());
+    CORDA_INDEPENDENT
+    for (std::size_t i = 0; i < motion.x_m.size(); ++i) {
+        const double weighted_s = kick_s * inverse_mass[i];
+        add_unrounded(vx[i], lost_x[i], slowdown * vx[i] + stage.push_m_s.x + weighted_s * force_x[i]);
+        add_unrounded(vy[i], lost_y[i], slowdown * vy[i] + stage.push_m_s.y + weighted_s * force_y[i]);
+    }
     return {stage.span_s, 1.0, {}};
 }
 

@@ -235,7 +235,7 @@ TEST(Checks, RepeatARunOfFixedStepsThatIsNearRounding) {
     EXPECT_EQ(of(RattleDef{2, 3e-4}, check), Methods{check});
     EXPECT_EQ(of(run, check), (Methods{check, run, run}));
 
-    // What checks of one method differ by counts twice: rounding, here of much less than the error.
+    // What runs of one method differ by counts twice: rounding, here far less than the error.
     Checks checks(system, WorldDef{}, trial_of(run, check), 1.0 / 60.0);
     Simulation alike(system, WorldDef{}, run);
     ASSERT_EQ(alike.advance_to(0.3), Status::kOk);
@@ -249,6 +249,10 @@ TEST(Checks, RepeatARunOfFixedStepsThatIsNearRounding) {
         largest_m = std::max(largest_m, length(alike.state().x_m[i] - truth.state().x_m[i],
                                                alike.state().y_m[i] - truth.state().y_m[i]));
     EXPECT_NEAR(error_m, largest_m, 0.01 * largest_m);
+    State moved = alike.state();
+    constexpr double kMoved = 1e-3;
+    moved.x_m.back() += kMoved;  // as if by rounding
+    EXPECT_NEAR(checks.difference_m(moved), 3.0 * kMoved, 0.1 * kMoved);
 }
 
 /// Of a rope that swings, in one thread (5 links) and in several (120).
