@@ -242,19 +242,17 @@ void guess(RattleModel& model, std::size_t stage, double kick_s, int known, cons
 
 /// Applies the decay and the push of a stage together with the elastic forces; returns what is left of it.
 CORDA_AVX2_CLONES Stage push(const RattleModel& model, double kick_s, const Stage& stage, Motion& motion) {
-    const double* const inverse_mass = model.constraints->bars().inverse_mass_1_kg.data();
-    const double* const force_x = model.force_x_n.data();
-    const double* const force_y = model.force_y_n.data();
-    double* const vx = motion.vx_m_s.data();
-    double* const vy = motion.vy_m_s.data();
-    double* const lost_x = motion.vx_lost_m_s.data();
-    double* const lost_y = motion.vy_lost_m_s.data();
+    const std::vector<double>& inverse_mass = model.constraints->bars().inverse_mass_1_kg;
     const double slowdown = stage.decay - 1.0;
     CORDA_INDEPENDENT
-    for (std::size_t i = 0; i < motion.x_m.size(); ++i) {
+    for (std::size_t i = 0; i < inverse_mass.size(); ++i) {
         const double weighted_s = kick_s * inverse_mass[i];
-        add_unrounded(vx[i], lost_x[i], slowdown * vx[i] + stage.push_m_s.x + weighted_s * force_x[i]);
-        add_unrounded(vy[i], lost_y[i], slowdown * vy[i] + stage.push_m_s.y + weighted_s * force_y[i]);
+        const double change_x =
+            slowdown * motion.vx_m_s[i] + stage.push_m_s.x + weighted_s * model.force_x_n[i];
+        const double change_y =
+            slowdown * motion.vy_m_s[i] + stage.push_m_s.y + weighted_s * model.force_y_n[i];
+        add_unrounded(motion.vx_m_s[i], motion.vx_lost_m_s[i], change_x);
+        add_unrounded(motion.vy_m_s[i], motion.vy_lost_m_s[i], change_y);
     }
     return {stage.span_s, 1.0, {}};
 }
