@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tarfile
 import time
+import zipfile
 
 import numpy as np
 import pytest
@@ -465,6 +466,19 @@ def test_a_signal_to_one_worker_is_no_interruption(folder):
     os.killpg(process.pid, signal.SIGTERM)  # as schedulers of clusters do
     assert process.wait(60) == 143
     wait_until(lambda: not living(process.pid))
+
+
+def test_a_signal_amid_an_archive_is_a_signal(monkeypatch):
+    """The archive that it leaves raises an error of its own."""
+    worker = _run_sweep._Worker
+    monkeypatch.setattr(worker, "is_stopped", False)
+    monkeypatch.setattr(worker, "definition", type("Definition", (), {"pictures": []}))
+    monkeypatch.setattr(worker, "gl", ())
+    monkeypatch.setattr(_run_sweep, "make_sample", lambda *_: {"positions": np.zeros(3)})
+    monkeypatch.setattr(_shards, "pack", _archive.npz_bytes)
+    monkeypatch.setattr(zipfile, "_get_compressor", lambda *_: worker._stop())
+    with pytest.raises(KeyboardInterrupt):
+        worker.pack([0])
 
 
 def test_killed_sweeps_go_on(folder):

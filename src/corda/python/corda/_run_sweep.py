@@ -83,6 +83,10 @@ class _Worker:
             if cls.is_stopped:
                 raise KeyboardInterrupt
             return [_shards.pack(make_sample(cls.definition, number, cls.definition.pictures, *cls.gl)) for number in numbers]
+        except Exception:
+            if cls.is_stopped:  # leaving a half-written archive raises an error of its own
+                raise KeyboardInterrupt from None
+            raise
         finally:
             cls.is_making = False
 
