@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "benchmark/study/reference/numbers.hpp"
@@ -266,6 +267,9 @@ TEST(AutoPlan, EndsWithinALimitOfWork) {
         EXPECT_LE(plan.passes, row.passes) << row.name;
         EXPECT_LE(updates, row.updates) << row.name;
         EXPECT_LE(steps_per_run(plan), 20.0) << row.name;
+        for (const Trial& trial : plan.trials) EXPECT_LE(trial.reached_s, 1.1 * chosen.reached_s) << row.name;
+        const auto* rattle = std::get_if<RattleDef>(&plan.method);  // a scene file gives no guard
+        EXPECT_TRUE(rattle == nullptr || rattle->guard == RattleDef{}.guard) << row.name;
     }
 }
 

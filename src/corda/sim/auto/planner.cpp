@@ -159,14 +159,15 @@ void take_figures(const System& system, const Trial& chosen, BodyPlan& plan) {
 }
 
 /// Runs trials, cheapest first, until one holds to the end or no other is worth its price, and makes the last
-/// one the plan. Ends at the first trial of `exact` that diverges for a graph of rigid bars: they have come
-/// into line. Once trials have taken the work that planning may take, the run that failed last is drawn, or
-/// one that reached farther. If its rest would take more than a run may, that of the last trial that ended is
-/// drawn; without one, the body is refused. Of implicit steps that are too many, the next explicit ones
-/// follow.
+/// one the plan, or one that reached farther by a tenth. Ends at the first trial of `exact` that diverges for
+/// a graph of rigid bars: they have come into line. Once trials have taken the work that planning may take,
+/// the run that failed last is drawn, or that one. If its rest would take more than a run may, that of the
+/// last trial that ended is drawn; without one, the body is refused. Of implicit steps that are too many, the
+/// next explicit ones follow.
 void run_until_one_holds(const System& system, const WorldDef& world, const PlanDef& def,
                          std::vector<Candidate> candidates, BodyPlan& plan, Recording& recording) {
     constexpr double kShortSteps = 300.0;  // that a start may need
+    constexpr double kFarther = 1.1;       // by less, the tighter run is better: it errs less until then
     const double end_s = def.timeline.time_s(def.timeline.size() - 1);
     double left_updates = def.share * def.most_updates();
     for (const Trial& trial : plan.trials) left_updates -= trial.updates;
@@ -209,13 +210,11 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
         if (ended) last = i, last_ended = plan.trials.size() - 1;
         i = next.number;
     }
-    if (plan.trials.back().unchecked) {
-        const auto farthest =
-            std::ranges::max_element(plan.trials.begin() + first, plan.trials.end(), {}, &Trial::reached_s);
-        if (farthest->reached_s > plan.trials.back().reached_s)
-            go_back_to(static_cast<std::size_t>(farthest - plan.trials.begin()), system, world, def, plan,
-                       recording);
-    }
+    const auto farthest =
+        std::ranges::max_element(plan.trials.begin() + first, plan.trials.end(), {}, &Trial::reached_s);
+    if (farthest->reached_s > kFarther * plan.trials.back().reached_s)
+        go_back_to(static_cast<std::size_t>(farthest - plan.trials.begin()), system, world, def, plan,
+                   recording);
     take_figures(system, plan.trials.back(), plan);
     plan.unchecked = plan.unchecked || (plan.horizon_s && next.exceeds_budget);
     plan.diverges = recording.size() < def.timeline.size();
@@ -308,7 +307,9 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
             run_until_one_holds(system, world, def, exact_trials(system, world, tolerance_m, def.last_s()),
                                 plan, recording);
             // `rattle` passes lines of bars.
-            if (has_come_into_line(system, plan.trials.back()) && !refusal_of(RattleDef{})) {
+            const bool is_in_line = std::ranges::any_of(
+                plan.trials, [&](const Trial& trial) { return has_come_into_line(system, trial); });
+            if (is_in_line && !refusal_of(RattleDef{})) {
                 plan.horizon_s = std::nullopt;
                 plan.reason = PlanReason::kGraph;
                 run_until_one_holds(system, world, def, graph_trials(system, world, def), plan, recording);

@@ -165,9 +165,9 @@ class Checks : NonCopyable {
 
 /// Finds a method whose positions stay within the tolerance for the only body of `system`, and estimates its
 /// error by tighter runs (section 3.6 of src/corda/sim/README.md). `recording` then holds the states of that
-/// run, which are drawn. If no trial stays within the tolerance to the end, the tightest is taken, with a
-/// horizon. Decisions depend on counts and positions, never on a clock. Throws corda::Refusal if no method
-/// can run the body.
+/// run, which are drawn. If no trial stays within the tolerance to the end, the tightest is taken, or
+/// one that does so longer by a tenth, with a horizon. Decisions depend on counts and positions, never on a
+/// clock. Throws corda::Refusal if no method can run the body.
 [[nodiscard]] BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& def,
                                  Recording& recording);
 

@@ -125,19 +125,16 @@ constexpr double kCheapEffortWithKinks = 0.01;
 /// Adds the trials that come before those of `exact`, with these digits and more.
 void add_cheap_trials(std::vector<Candidate>& trials, const System& system, double step_s,
                       double check_tolerance, int digits) {
-    const auto cheap = [](double s, double share) {
-        return RattleDef{kCheapOrder, s, share * RattleDef{}.guard};
-    };
     if (!has_kinks(system)) {
-        trials.push_back(
-            candidate(system, cheap(step_s, 1.0), ExactDef{check_tolerance}, kCheapEffort, 1.0, digits));
+        trials.push_back(candidate(system, RattleDef{kCheapOrder, step_s}, ExactDef{check_tolerance},
+                                   kCheapEffort, 1.0, digits));
         return;
     }
     double share = 1.0;
     for (int i = 0; i < kTrialsWithKinks; ++i, share *= kCheckStep) {
         const double effort = kCheapEffortWithKinks / share;
-        trials.push_back(candidate(system, cheap(share * step_s, share),
-                                   cheap(kCheckStep * share * step_s, kCheckStep * share), effort,
+        trials.push_back(candidate(system, RattleDef{kCheapOrder, share * step_s},
+                                   RattleDef{kCheapOrder, kCheckStep * share * step_s}, effort,
                                    effort / kCheckStep, digits + i));
     }
 }
