@@ -1,5 +1,6 @@
 #include "corda/film/motion.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -155,6 +156,37 @@ moves = [{ pin = -1, path = [{ t = 0.0, by = [0.0, 0.0] }, { t = 2.0, by = [2.0,
     const test::Failure failure = failure_of([&] { std::ignore = motion->at(3.0); });
     EXPECT_NE(failure.message.find("of rope 1 are then"), std::string::npos) << failure.message;
     EXPECT_NE(failure.message.find("; pins that stay within reach of each other"), std::string::npos);
+}
+
+// Thrown, with a hole: cells come into line at 0.3 s.
+TEST(Motions, OfNetsThatDivergeNameTheMethodThatHelps) {
+    constexpr int kSide = 8;
+    constexpr int kHole = 19;
+    std::string points;
+    std::string bars;
+    const auto number = [](int k) { return std::to_string(k > kHole ? k - 1 : k); };
+    const auto join = [&](int a, int b) {
+        if (a != kHole && b != kHole) bars += "[" + number(a) + ", " + number(b) + "], ";
+    };
+    for (int k = 0; k < kSide * kSide; ++k) {
+        const double spacing_m = 1.0 / (kSide - 1);
+        if (k != kHole)
+            points += fmt::format("[{}, {}], ", spacing_m * (k % kSide), -spacing_m * (k / kSide));
+        if (k % kSide < kSide - 1) join(k, k + 1);
+        if (k / kSide < kSide - 1) join(k, k + kSide);
+    }
+    const auto motion_of = [&](const std::string& solver) {
+        return simulate(
+            parse_scene("schema = 1\n[world]\nduration = 0.5\n[solver]\n" + solver + "\n[[net]]\npoints = [" +
+                            points + "]\nbars = [" + bars + "]\npinned = [0, 7]\nvelocity = [0.5, 0.0]\n",
+                        "a"),
+            {});
+    };
+    const auto motion = motion_of("method = \"exact\"\ntolerance = 1e-8");
+    ASSERT_TRUE(motion->diverges());
+    EXPECT_EQ(divergence_of(*motion).remedy,
+              "method rattle, which passes lines of bars, less speed or force");
+    EXPECT_FALSE(motion_of("method = \"rattle\"")->diverges());
 }
 
 TEST(Motions, ReportTheirProgress) {
