@@ -76,8 +76,11 @@ CORDA_INLINE int pull(std::size_t count, const double* __restrict rest_m,
 /// Adds the forces of springs, and returns how many are shorter than about half of their rest lengths.
 CORDA_AVX2_CLONES int add_spring_forces(const Springs& springs, Components<const double> at_m,
                                         Components<double> force_n) {
+    // To set them to 0 would take longer than a spring.
+    // NOLINTBEGIN(cppcoreguidelines-pro-type-member-init)
     std::array<double, Springs::kChunk> x;
     std::array<double, Springs::kChunk> y;
+    // NOLINTEND(cppcoreguidelines-pro-type-member-init)
     int short_ones = 0;
     const Strip* strip = springs.strips.data();
     for (std::size_t first = 0; first < springs.bar.size(); first += Springs::kChunk) {
