@@ -180,8 +180,9 @@ System elastic_cloth(std::uint32_t side, bool is_string) {
     return build_system({}, {&net, 1});
 }
 
-/// A cloth of side x side particles on two corners that is thrown sideways, with each particle moved by up to
-/// `uneven` of the spacing, and without particle `hole`.
+/// A cloth of side x side particles that hangs from two corners and is thrown sideways. Each particle is
+/// moved by up to `uneven` of the spacing along each axis, and particle `hole`, below the first row, is
+/// missing.
 System thrown_cloth(std::uint32_t side, double uneven, std::optional<std::uint32_t> hole) {
     NetDef net = test::cloth(side, side, 1.0 / (side - 1));
     std::erase_if(net.bars,

@@ -152,12 +152,14 @@ Divergence divergence_of(const Motion& motion) {
     const std::size_t states = motion.recording->size();
     const double next_s = motion.diverges() ? motion.timeline->time_s(states) : motion.duration_s;
     Divergence divergence{.cause = pins_out_of_reach(system, next_s), .remedy = ""};
-    const auto loses_lines = [&](std::size_t b) {
-        return system.bodies[b].is_net && system.bodies[b].material.compliance_1_n == 0.0 &&
-               std::holds_alternative<ExactDef>(motion.plan.bodies[b].method);
-    };
-    for (std::size_t b = 0; b < system.bodies.size() && divergence.remedy.empty(); ++b)
-        if (loses_lines(b)) divergence.remedy = "method rattle, which passes lines of bars, ";
+    bool loses_lines = false;
+    for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+        const Body& body = system.bodies[b];
+        loses_lines =
+            loses_lines || (std::holds_alternative<ExactDef>(motion.plan.bodies[b].method) &&
+                            body.material.compliance_1_n == 0.0 && !sim::moves_as_chains(system, body));
+    }
+    if (loses_lines) divergence.remedy = "method rattle, which passes lines of bars, ";
     if (!system.moves.empty())
         divergence.remedy += "pins that stay within reach of each other, a compliance, ";
     if (ratio >= kUnequal)

@@ -108,7 +108,7 @@ class Checks::Check : NonCopyable {
   public:
     Check(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
           std::size_t number, const std::vector<double>& longer_m = {})
-        : method_(method), cosine_sine_(kTurns.at(number % kMaxCount)), system_(system) {
+        : cosine_sine_(kTurns.at(number % kMaxCount)), system_(system) {
         round_lengths(system_, number);
         const MaterialDef& material = system.bodies.front().material;
         const auto* exact = std::get_if<ExactDef>(&method);
@@ -138,7 +138,6 @@ class Checks::Check : NonCopyable {
         state_ = {0.0, system_.x_m, system_.y_m};
     }
 
-    [[nodiscard]] const MethodDef& method() const { return method_; }
     [[nodiscard]] double margin_m() const { return solver_->margin_m(); }
 
     /// kDiverged also if it has branched, or ended because it would take more work than this.
@@ -187,7 +186,6 @@ class Checks::Check : NonCopyable {
         return make_part(system_, forces, method, all);
     }
 
-    MethodDef method_;
     Vec2 cosine_sine_;  ///< of the angle by which it is turned
     System system_;
     std::unique_ptr<Solver> solver_;
@@ -197,9 +195,10 @@ class Checks::Check : NonCopyable {
 };
 
 Checks::Checks(const System& system, const Forces& forces, const Trial& trial, double frame_interval_s) {
-    for (const MethodDef& method : checks_of(system, trial))
+    const std::vector<MethodDef> methods = checks_of(system, trial);
+    for (const MethodDef& method : methods)
         checks_.push_back(std::make_unique<Check>(system, forces, method, frame_interval_s, size()));
-    repeat_run_ = checks_.back()->method() == trial.method;
+    repeat_run_ = methods.back() == trial.method;
     first_alike_ = repeat_run_ ? 1 : 0;
 }
 

@@ -92,10 +92,9 @@ struct TrialKind {
 /// particles that are moved to either side, and shows how small movements grow.
 [[nodiscard]] bool may_buckle_unseen(const System& system, const MethodDef& method);
 
-/// The methods of a trial's checks, the first of which is its `check`, and the second, too, if
-/// may_buckle_unseen(). A run whose error is not far above rounding has two more, which show what rounding
-/// makes of the motion. Of a run of fixed steps they are repetitions, because its other errors hardly depend
-/// on the directions of coordinates.
+/// The methods of a trial's checks. The first is its `check`, and so is the second if may_buckle_unseen(). A
+/// run whose error is not far above rounding has two more, which show how rounding changes the motion. They
+/// repeat a run of fixed steps, whose other errors hardly depend on the directions of coordinates.
 [[nodiscard]] std::vector<MethodDef> checks_of(const System& system, const Trial& trial);
 
 /// Runs the trial's method and its checks side by side, the checks in turned coordinates, so that their
@@ -165,8 +164,8 @@ class Checks : NonCopyable {
 
 /// Finds a method whose positions stay within the tolerance for the only body of `system`, and estimates its
 /// error by tighter runs (section 3.6 of src/corda/sim/README.md). `recording` then holds the states of that
-/// run, which are drawn. If no trial stays within the tolerance to the end, the tightest is taken, or
-/// one that does so longer by a tenth, with a horizon. Decisions depend on counts and positions, never on a
+/// run, which are drawn. If no trial stays within the tolerance to the end, the tightest is taken, or one
+/// that does so longer by a tenth, with a horizon. Decisions depend on counts and positions, never on a
 /// clock. Throws corda::Refusal if no method can run the body.
 [[nodiscard]] BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& def,
                                  Recording& recording);
